@@ -66,7 +66,7 @@ def course(engine, case, moves):
     for k in range(3):
         engine.advance(10)
         if moves:
-            engine.live_in(anywhere(engine, k))
+            engine.move_borders(anywhere(engine, k))
     engine.advance(2, ["stress"])
     found |= {f"stress {name}": part for name, part in engine.stress.items()}
     found["totals"] = np.concatenate([np.atleast_1d(part) for part in engine.totals()])

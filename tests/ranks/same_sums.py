@@ -113,7 +113,7 @@ def course(engine, case, piece, moves):
     for k in range(3):
         engine.advance(7)
         if moves:
-            engine.live_in(anywhere(engine, k))
+            engine.move_borders(anywhere(engine, k))
         for accumulator in accumulators:
             accumulator.observe(engine)
     return {

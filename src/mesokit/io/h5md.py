@@ -308,6 +308,8 @@ def _particles(
             if name in UNITS:
                 sets[name].attrs["reduced_unit"] = units_of(case).of(UNITS[name])
     edges = _box(group, case, frames)
+    # Frame by frame and in chunks of particles: memory does not grow with the run. H5MD has three
+    # components, so in 2D the missing one is 0.
     for index, frame in enumerate(trajectory.frames()):
         check()
         group["time"][index] = frame["time"]

@@ -1,1 +1,1 @@
-"""What compiled loops of any method need: threads, cells, memory in strips, a clock."""
+"""The needs of compiled loops of any method: threads, cells, memory in strips, a clock."""

@@ -55,9 +55,9 @@ def next_along(lists, box, k, x):
 
 @scalar
 def outdated(farthest, slip, skin):
-    """Whether lists may miss somebody: two have gone toward one another by more than the skin.
+    """Whether lists may miss a pair: two particles may have approached by more than the skin.
 
-    `farthest` is the square of the longest way since the lists were made, `slip` how far the images
-    have slid meanwhile.
+    `farthest` is the square of the longest displacement since the lists were made, `slip` the
+    displacement of images along x meanwhile.
     """
     return 2.0 * math.sqrt(farthest) + slip > skin

@@ -1,4 +1,4 @@
-"""How particles lie in memory: blocks of 4096, each with one row per coordinate and velocity.
+"""The layout of particles in memory: blocks of 4096, each with one row per coordinate and velocity.
 
 A block (x x x ... y y y ... vx vx vx ...) is one stretch of memory, rows at constant offsets, so
 that LLVM can see that they do not overlap and vectorise the loop over a strip of 256 particles. A
@@ -37,13 +37,13 @@ def zeros(shape: int | tuple[int, ...], kind: Any = np.float64) -> Any:
 
 
 class Singles(NamedTuple):
-    """How many single particles lie in the strips."""
+    """The number of single particles in the strips."""
 
     molecules: int
 
 
 class Molecules(NamedTuple):
-    """How many molecules of how many beads each lie in the strips."""
+    """The number of molecules in the strips, and of beads of each."""
 
     molecules: int
     beads: int
@@ -60,7 +60,7 @@ def strips_for(molecules: int, beads: int = 1) -> int:
 
 
 def places_of_beads(molecules: int, beads: int) -> Any:
-    """Where the beads of each molecule lie (molecules, beads), counted through the strips."""
+    """Places of the beads of each molecule (molecules, beads), counted through the strips."""
     molecule = np.arange(molecules)[:, None]
     return (molecule // LANES * beads + np.arange(beads)) * LANES + molecule % LANES
 
@@ -93,7 +93,7 @@ def lanes_in(filling, strip):
 
 @by_type
 def place_of_bead(filling, molecule, bead):
-    """Where a bead of a molecule lies, counted through the strips."""
+    """The place of a bead of a molecule, counted through the strips."""
     return _molecule if filling.instance_class is Singles else _in_group
 
 
@@ -127,7 +127,7 @@ def share(number, thread, threads):
 
 @scalar
 def place(particle, rows, row):
-    """Where a row's value for a particle, counted through the blocks, lies in memory."""
+    """The index in memory of a row's value for a particle, which is counted through the blocks."""
     block = np.uint64(particle) >> BLOCK_BITS
     lane = np.uint64(particle) & np.uint64(BLOCK - 1)
     return block * np.uint64(rows * ROW) + np.uint64(row * ROW) + lane

@@ -67,6 +67,8 @@ def correlated(
     residuals, weights, number = _prepared(residuals, weights)
     with np.errstate(divide="ignore", invalid="ignore"):
         variance, of_blocks = (residuals**2).sum(axis=0), (weights**2).sum(axis=0)
+        # Correlations are summed over rising lags for all elements at once. An element leaves when
+        # noise, which grows with the lag, exceeds what an exponential decay would still add.
         times = np.full(variance.shape, 0.5)  # integrated correlation, in blocks
         window, growing = np.zeros(variance.shape), variance > 0
         for lag in range(1, len(residuals) // FEWEST_WINDOWS + 1):
@@ -104,6 +106,8 @@ def falling_error(residuals: ArrayLike, weights: ArrayLike) -> NDArray[np.float6
         number, error = _level(residuals, weights)
         error = np.where(number > FEWEST_BLOCKS - _SLACK, error, np.nan)
         moving = np.isfinite(error)
+        # All elements merge together, but each stops where merging changes its error by less than
+        # one standard deviation of such a change.
         while len(residuals) > FEWEST_MERGED and moving.any():
             residuals, weights = merge_pairs(residuals), merge_pairs(weights)
             slack = 1 / np.sqrt(2 * (number - 1))

@@ -79,7 +79,7 @@ class Blocks:
 
     @property
     def series(self) -> int:
-        """How many independent series are pooled in it."""
+        """The number of independent series that are pooled in it."""
         return 1 + len(self._others)
 
     def pool(self, other: "Blocks") -> None:

@@ -129,6 +129,9 @@ class MultipleTau:
         entry, number = self._sample, self._count  # the entry of the level, and how many before it
         self._count += 1
         depth = 0
+        # Up the levels, as long as an average of `averages` entries is complete. At each level the
+        # new entry is multiplied with the latest ones of its ring. Level l gets an entry every
+        # averages^l samples, so the mean cost of a sample is bounded, however long the run.
         while depth < len(self._levels):
             ring, sums = self._levels[depth]
             slot = number % self.points
@@ -153,7 +156,7 @@ class MultipleTau:
 
     @property
     def series(self) -> int:
-        """How many independent series are pooled in it."""
+        """The number of independent series that are pooled in it."""
         return 1 + len(self._others)
 
     def pool(self, other: "MultipleTau") -> None:
@@ -243,7 +246,7 @@ class MultipleTau:
         return Correlation(np.concatenate(lag), np.concatenate(value), np.concatenate(error))
 
     def products(self, within_blocks: bool = False) -> Iterator[Products]:
-        """What `correlation` is made of, level by level, shortest lags first.
+        """Sums and counts of products, level by level, shortest lags first.
 
         Parameters: `within_blocks` leaves out levels that average over more samples than a block
         of time holds. Yields the levels that have been sampled: lags (n,), sums of products

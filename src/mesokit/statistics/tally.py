@@ -1,4 +1,4 @@
-"""Whole numbers that are added up for as long as a run lasts, exact whatever their size."""
+"""Sums of whole numbers over a whole run, exact whatever their size."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Tally:
         return np.asarray((self.high * 2.0**BITS + self.low) / self.unit)
 
     def since(self, earlier: Tally) -> NDArray[np.float64]:
-        """What has been added since, in units: exact before it is rounded to a float."""
+        """The sum since then, in units: exact before it is rounded to a float."""
         added = (self.high - earlier.high) * 2**BITS + (self.low - earlier.low)
         return added.astype(float) / self.unit
 

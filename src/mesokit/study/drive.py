@@ -131,6 +131,9 @@ def drive(
     looked = 0.0
     try:
         with catching(lambda by: _stop(stopped, by, workers)):
+            # Polled: the steps of runs are read from their folders. After a signal no more runs
+            # start; those in hand write their checkpoints first. Of a kind that is not compiled,
+            # one run starts alone, and the others use its kernels.
             while in_hand or (waiting and not stopped):
                 if not stopped:
                     _hand_out(waiting, in_hand, workers)

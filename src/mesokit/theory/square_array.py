@@ -35,6 +35,9 @@ def square_array_drag(concentration: float) -> float:
     edge = 0.5 * math.sqrt(math.pi / concentration)  # half the pitch, over the radius
     along = edge * (np.arange(POINTS) + 0.5) / POINTS
     columns = []
+    # Two stream functions for each odd n, by the symmetry of the flow. A column has stream
+    # function, vorticity or their slopes at points of two edges of the cell. The series is fitted
+    # to their values there.
     for n in range(1, 2 * TERMS, 2):
         for powers, logarithm in _no_slip(n):
             top = _flow(n, powers, logarithm, along, np.full(POINTS, edge))

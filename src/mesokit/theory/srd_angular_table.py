@@ -154,6 +154,8 @@ def _one_block(inner: Array, particles: int) -> Array:
     kept: list[Array] = []
     shear: list[Array] = []
     along: list[Array] = []
+    # All axes of a cell are alike, so the terms of all pairs of axes i, j are averaged. Shear (i !=
+    # j) gives q, compression (i = j) gives l, each pair once gives s0.
     for i in range(dimension):
         for j in range(dimension):
             # flow along i that grows along j: what is left of it after the rigid rotation

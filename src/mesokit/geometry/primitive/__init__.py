@@ -1,4 +1,4 @@
-"""What shapes are made of. A new one is a file here and a name in `PRIMITIVES`.
+"""The primitives that shapes consist of. A new one is a file here and a name in `PRIMITIVES`.
 
 Each file has `distance(p, samples, r)`: the signed distance of r from the surface, negative inside
 the solid, or something of its sign that is no larger; `normal(p, samples, r)`; and whether the

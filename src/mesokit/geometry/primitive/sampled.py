@@ -62,6 +62,8 @@ def interpolated(p, samples, x):
     """Value between the samples, and its gradient per spacing."""
     base, part = split(x)
     value, gradient = 0.0, scaled(0.0, x)
+    # Multilinear interpolation over the 2^d corners. The gradient has the same weights, with the
+    # one of its own axis replaced by the sign of the corner.
     for which in range(1 << len(x)):
         sample, weight = corner(p, samples, base, which), 1.0
         for k in range(len(x)):
@@ -84,6 +86,8 @@ def twist(p, samples, base, v):
     linear along the other axes.
     """
     total, d = 0.0, len(v)
+    # Mixed derivatives of each pair of axes, from the four samples of a face. In 3D they are linear
+    # along the third axis, so the larger of the two opposite faces is a bound.
     for j in range(d):
         for k in range(j + 1, d):
             most = 0.0
@@ -100,7 +104,7 @@ def twist(p, samples, base, v):
 
 @scalar
 def ahead(p, samples, r, v):
-    """What a flight sees: value, its slope along the flight, a bound of how that may change within
+    """The value at a place, its slope along the flight, a bound of the change of slope within
     the cell of the grid, and the time until it leaves this.
 
     Beyond the grid, as if it flew straight to the solid.

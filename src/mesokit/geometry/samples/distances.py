@@ -119,7 +119,7 @@ def slope(grid: Grid) -> float:
 
 
 def volume(values: Floats, spacing: float) -> float:
-    """Of the solid, in cells."""
+    """Volume of the solid, in cells."""
     return float(np.clip(0.5 - values / spacing, 0.0, 1.0).sum()) * spacing**values.ndim
 
 

@@ -80,6 +80,9 @@ def square_to_face(r, a, b, c):
 def measure(corners, counts, reach, squares, pattern):
     """Lower the squares of distances to those from each simplex."""
     d = len(pattern)
+    # Simplex by simplex: only grid points in its bounding box, widened by the reach. So the work is
+    # that of the surface, not of the volume. The least square is left at each point. Lengths are
+    # spacings.
     for i in range(len(corners)):
         low, wide, total = counts, counts, 1
         for k in range(d):
@@ -111,6 +114,9 @@ def measure(corners, counts, reach, squares, pattern):
 def cross(corners, counts, crossings, pattern):
     """Count, at the first point beyond each crossing, where lines along the last axis cross."""
     d = len(pattern)
+    # Lines of grid points along the last axis. Each crossing is counted at the first point above
+    # it; the caller's running sum along the line is odd inside. Corners are moved by ASIDE, so that
+    # no line passes through an edge and is counted twice or not at all.
     for i in range(len(corners)):
         low, wide, total = counts, counts, 1
         for k in range(d - 1):

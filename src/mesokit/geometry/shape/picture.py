@@ -182,6 +182,8 @@ def outline_distance(white: Floats, repeats: list[bool], reach: float) -> Floats
     around = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2)
     points = (near[:, None] + around).reshape(-1, 2)
     off = np.zeros(len(points))
+    # Newton's method along the gradient of the blurred picture, in pixels, for all points at once.
+    # A step is at most one pixel, so a point does not jump to another outline.
     for _ in range(8):
         f, gx, gy = (ndimage.map_coordinates(field, points.T + 1.0, order=1) for field in fields)
         square = np.maximum(gx**2 + gy**2, 1e-6)

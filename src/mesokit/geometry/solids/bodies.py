@@ -178,7 +178,7 @@ def nearest_within(tables, away, r):
     """Clearance of r, which is in the box, and the part and term it is measured from.
 
     Where nothing is nearer than `away`, which the lists of the tables must reach, that is the
-    clearance, and the term is NOBODY.
+    clearance, and the term is NO_TERM.
     """
     least, part, term = away, 0, NO_TERM
     cell = home_cell(tables, r)
@@ -192,7 +192,7 @@ def nearest_within(tables, away, r):
 
 @seldom
 def nearest(tables, r):
-    """The same for all that any list has: nearer than REACH."""
+    """Nearest term, part and clearance, as far as any list has terms: nearer than REACH."""
     return nearest_within(tables, REACH, r)
 
 

@@ -1,4 +1,4 @@
-"""Solids of any shape, as the step asks for them: hits, reflections, places in the fluid."""
+"""Solids of any shape in a step: hits, reflections, places in the fluid."""
 
 import math
 

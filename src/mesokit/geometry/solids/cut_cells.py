@@ -66,7 +66,7 @@ _of_tile = functools.lru_cache(maxsize=2 * KEPT_TILES)(_kept)
 
 
 def _tiles(cells: tuple[int, ...], block: Block) -> Iterator[Block]:
-    """Those that a block has cells of; none reaches beyond the grid."""
+    """The tiles that have cells of a block; none reaches beyond the grid."""
     along = [range(a // TILE, (b - 1) // TILE + 1) for a, b in zip(*block, strict=True)]
     for at in itertools.product(*along):
         low = tuple(TILE * i for i in at)
@@ -80,7 +80,7 @@ def _joined(make: Any, solids: Solids, cells: tuple[int, ...], block: Block) -> 
 
 
 def _of_tiles(solids: Solids, cells: tuple[int, ...], block: Block) -> tuple[Any, Any]:
-    """Which rows of all tiles are of the block, in order, and the offset of each row."""
+    """The rows of all tiles that belong to the block, in order, and the offset of each row."""
     offsets = [
         np.repeat(np.arange(len(starts) - 1), np.diff(starts))
         for starts, _, _ in (_of_tile(_found, solids, cells, tile) for tile in _tiles(cells, block))
@@ -114,7 +114,7 @@ def _found(solids: Solids, cells: tuple[int, ...], block: Block | None) -> tuple
 
 
 def _search(solids: Solids, every: Any, origin: tuple[float, ...]) -> Any:
-    """Which of these cells (n, d) a surface may cut, by their lower corners."""
+    """Find those of these cells (n, d) that a surface may cut, by their lower corners."""
     half = 0.5 + 0.5 / OFFSETS[solids.dimension]
     middle = every + 0.5 - np.array(origin)
     near = np.flatnonzero(np.abs(solids.distance(middle)) <= half * math.sqrt(solids.dimension))
@@ -184,7 +184,7 @@ def _nearest(solids: Solids, middles: Any, heights: Any) -> survey.Planes:
 
 
 def _away(d: int) -> float:
-    """How far the surface of a cell that is cut may be from its middle."""
+    """The longest distance of a surface that cuts a cell from the middle of the cell."""
     return (0.5 + 0.5 / OFFSETS[d]) * math.sqrt(d) + MARGIN
 
 

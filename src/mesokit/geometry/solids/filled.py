@@ -1,4 +1,4 @@
-"""Solids of any shape, as virtual particles ask for them."""
+"""Solids of any shape for virtual particles."""
 
 import math
 

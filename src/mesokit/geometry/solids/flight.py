@@ -73,6 +73,8 @@ def approach(tables, part, r, v, a, time):
     """When the flight enters a convex part; more than `time` if it does not."""
     late, t = 2.0 * time + 1.0, 0.0
     x, u = r, v
+    # Newton's method from outside: fly to the tangent plane of the nearest place, then take the
+    # plane there. A convex part lies behind each of these planes, so no step enters it.
     for _ in range(MOST_TRIES):
         c, n = part_clearance(tables, part, x), part_normal(tables, part, x)
         if c <= ON_SURFACE and dot(n, u) < 0.0:
@@ -96,6 +98,8 @@ def traverse(tables, part, r, v, a, time):
     spacing, steep, pull = real(p, 3), real(p, 8), length(a)
     late, t = 2.0 * time + 1.0, 0.0
     x, u = r, v
+    # Within one cell of the grid the value along the flight has a bounded second derivative. A
+    # parabola with it is a safe step; at the end of a cell the slope is taken anew.
     for _ in range(MOST_TRIES + int(8.0 * REACH / spacing)):
         value, slope, bend, leave = sampled.ahead(p, samples, x, u)
         value, slope = sign * value, sign * slope
@@ -126,6 +130,9 @@ def march(tables, part, r, v, a, time):
         return late
     x, u = r, v
     c = part_clearance(tables, part, r)
+    # A step is as long as the clearance allows at the highest speed that is left, so it cannot pass
+    # through the part. Near the surface steps are SHORT_STEP; the first place inside brackets the
+    # crossing.
     while t < time:
         ahead = max(c, SHORT_STEP) / (length(u) + pull * (time - t) + 1e-300)
         ahead = min(t + ahead, time)
@@ -142,8 +149,10 @@ def crossing(tables, part, flight, times, distances):
     """The last time found outside, when a flight (place, velocity, acceleration) crosses the
     surface between two times, at which its distances from it are positive and negative."""
     (r, v, a), (outside, inside), (above, below) = flight, times, distances
+    # False position; the end that stays is given half the weight (Illinois). Every eighth step is a
+    # bisection, in case the distance is not smooth. `outside` is always in the fluid, so it is
+    # safe.
     for n in range(MOST_TRIES):
-        # false position; its end that stays is given half the weight (Illinois), now and then half
         share = above / (above - below) if n % 8 < 7 else 0.5
         middle = outside + share * (inside - outside)
         if not outside < middle < inside:
@@ -197,6 +206,8 @@ def meeting(tables, term, r, v, a, time):
         return entry(tables, first, r, v, a, time), first
     late, t = 2.0 * time + 1.0, 0.0
     x, u = r, v
+    # A term is an intersection: a place outside of any part is outside of the term. So the flight
+    # goes on to the entry into the part that it is farthest out of, until it is in all.
     for _ in range(MOST_TRIES):
         c, part = term_clearance(tables, term, x)
         if c <= ON_SURFACE and dot(part_normal(tables, part, x), u) < 0.0:
@@ -223,8 +234,8 @@ def may_reach(tables, term, r, path):
 def first_meeting(tables, r, v, a, time, last_part, last_term):
     """The first hit of a flight that starts in the box: time, part and term.
 
-    It starts on the surface of the last part and term, unless that is NOBODY.
-    A flight is followed no farther than REACH at a time: where it then is, the term is NOBODY.
+    It starts on the surface of the last part and term, unless that is NO_TERM.
+    A flight is followed no farther than REACH at a time: at the end of such a piece it is NO_TERM.
     The time is more than `time` if nothing is left to happen.
     """
     speed = length(v) + 0.5 * length(a) * time
@@ -235,6 +246,9 @@ def first_meeting(tables, r, v, a, time, last_part, last_term):
         soonest = REACH / speed
         path, time = REACH, soonest
     cell = home_cell(tables, r)
+    # Terms in the list of the cell where the flight starts: it holds all within REACH, and the
+    # flight is no longer. The term of the last hit is left out if the flight departs from it; its
+    # clearance there is 0 but for rounding.
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
         candidate = whole(word(tables, NEAR), j)
         if candidate == last_term and departs(tables, last_part, r, v, a, time):

@@ -27,6 +27,8 @@ from mesokit.scalar.vector import added_scaled, dot, outer, row, scaled
 def planes_above(solid, pattern, away, columns, points, planes):
     """Normal and height n r of a plane above which no solid is within `away` of each point."""
     d = len(pattern)
+    # The normal is that of the nearest surface. If nothing else is within `away` and the part is
+    # convex, its tangent plane is the highest; else columns are probed.
     for i in range(len(points)):
         r = row(points, i, pattern)
         c, part, term = nearest(solid.tables, r)
@@ -63,6 +65,9 @@ def highest(solid, r, n, away, columns):
     d, side = len(r), 2.0 * away / columns
     half = 0.5 * side * math.sqrt(d - 1.0)
     top = -away
+    # Columns along n fill the ball. Each is followed down its axis by balls without solid: a ball
+    # of radius c clears the column over sqrt(c^2 - half^2). It ends where the ball is not wider
+    # than the column, or below the highest end so far.
     for number in range(columns ** (d - 1)):
         foot, rest = r, number
         for k in range(d - 1):

@@ -1,4 +1,4 @@
-"""Which terms reach into the box: of the many images of a solid, most do not."""
+"""The terms that reach into the box: of the many images of a solid, most do not."""
 
 from __future__ import annotations
 

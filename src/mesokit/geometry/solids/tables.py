@@ -37,7 +37,7 @@ from mesokit.scalar.pointer import address
 
 EDGES = (64, 8, 1)  # cells: blocks, and blocks within them
 MOST_NEAR = 2**31 - 1  # places in a list are 32-bit
-FARTHEST = 8.0  # cells from a surface at which anybody asks
+FARTHEST = 8.0  # cells from a surface at which distances are needed
 RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
 
 

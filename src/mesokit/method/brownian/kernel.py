@@ -49,6 +49,8 @@ def scatter(first, last, counter, size, places):
 @kernel
 def wander(first, last, counter, steps, motion, places, images):
     """So many steps of these particles."""
+    # All steps of one particle, then the next one: places stay in registers. Random numbers follow
+    # from particle and step, so the order of the two loops and shares of threads change no bit.
     for i in range(first, last):
         r = motion.size
         for k in range(len(r)):

@@ -64,6 +64,9 @@ class Origins:
             self.block_length *= 2
         self._average(0, product(sample, sample))
         index = 1
+        # Level l stores every 2^l-th sample and has lags that are multiples of 2^l: all lags of
+        # level 0, the longer half of the others. Samples are not averaged, as displacements must be
+        # exact.
         for level in range(len(self.memory)):
             first = POINTS // 2 if level else 1
             number, rest = divmod(self.added, 1 << level)

@@ -30,6 +30,8 @@ def scatter_of_waves(each: Array, lengths: Array, members: NDArray[np.int64]) ->
     ends, (runs, _) = np.cumsum(members), each.shape
     starts, last = ends - members, len(members) - 1
     found = np.full(len(members), np.nan)
+    # Shell by shell: neighbours on both sides are added until there are enough degrees of freedom.
+    # A polynomial in q takes the trend of S away before.
     for place in range(len(members)):
         for reach in range(len(members)):
             low, high = max(0, place - reach), min(last, place + reach)

@@ -57,6 +57,8 @@ def shaded(balls: Balls, low: tuple[float, float], high: tuple[float, float], do
 def front(order, balls, low, scale, nearest, owner):
     """Which sphere is the nearest at each sample, and its depth there; quick if the first are."""
     rows, columns = owner.shape
+    # A depth buffer: each sphere covers its own circle of samples, from front to back, so most
+    # samples behind are left out by one comparison.
     for k in order:
         r, depth = balls.radii[k], balls.depth[k]
         x, y = balls.places[k, 0] - low[0], balls.places[k, 1] - low[1]

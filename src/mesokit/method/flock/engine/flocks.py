@@ -1,4 +1,4 @@
-"""The birds in memory: the verbs of an engine, on the threads of one machine."""
+"""The birds in memory: an engine on the threads of one machine."""
 
 from __future__ import annotations
 
@@ -83,10 +83,10 @@ class Flocks:
         return counter, steps, self.side, *self._packing(self.physics, self.flock)
 
     def check(self) -> None:
-        """Nothing can break down: speeds are given."""
+        """Do nothing: speeds are constant, so no state can be invalid."""
 
     def end_warmup(self) -> None:
-        """Nothing is summed up."""
+        """Do nothing: the engine has no sums since the start."""
 
     @property
     def time(self) -> float:
@@ -101,7 +101,7 @@ class Flocks:
         return places if ids is None else places[ids]
 
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
-        """How many boxes away the birds are, (n, d)."""
+        """Image counts (n, d) of the birds."""
         images = self._by_number(self.flock.birds.images)
         return images if ids is None else images[ids]
 

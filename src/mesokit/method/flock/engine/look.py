@@ -1,4 +1,4 @@
-"""What each bird sees: sums over all birds in reach, in whole numbers.
+"""Sums over all birds within reach of each bird, in whole numbers.
 
 The birds of a cell see those of the cells around. These are brought together in one small stretch
 of memory, for all birds of the cell; the loop over them has no branch and adds up whole numbers, so
@@ -74,7 +74,7 @@ def bring(near, j, seen, i, pattern):
 
 @by_type
 def asks_number(physics):
-    """Whether the number of birds in reach is needed, or who is a bird and who fills a lane."""
+    """Whether birds in reach are counted, or lanes with birds distinguished from empty ones."""
     if has_cohesion(physics):
         return lambda physics: True
     return lambda physics: counted(physics.noise)
@@ -89,6 +89,9 @@ def add_seen(physics, near, top, here, sums, i):
 def _see_headings(physics, near, top, here, sums, i):
     unit, d = physics.axes.unit, len(here)
     headings, around = nothing(here), _NONE
+    # A loop over vectors of 32-bit integers. Differences of places wrap around like the periodic
+    # box, so each is the separation of nearest images. At most CHUNK birds add up, so no sum
+    # overflows.
     for j in range(top):
         reached = length_squared(separation_from(near, j, here, unit)) <= physics.reach
         headings = with_heading(near, j, reached, headings)
@@ -102,6 +105,8 @@ def _see_headings_and_separations(physics, near, top, here, sums, i):
     unit, d, cohesion = physics.axes.unit, len(here), physics.cohesion[0]
     core = cohesion.core * cohesion.core
     headings, pulls, out, around = nothing(here), nothing(here), nothing(here), _NONE
+    # The same with cohesion: float32 factors of each separation, cut off to integers before they
+    # are added. Lanes that only fill up the last vector hold no bird and count for nothing.
     for j in range(top):
         separation = separation_from(near, j, here, unit)
         square = length_squared(separation)
@@ -130,14 +135,14 @@ def cells_of_axis(axes, k):
 
 @scalar
 def place_of_cell(axes, cell):
-    """Where a cell is among the cells: x, y, z."""
+    """The place of a cell among the cells: x, y, z."""
     wide, high = cells_of_axis(axes, 0), cells_of_axis(axes, 1)
     return cell % wide, cell // wide % high, cell // (wide * high)
 
 
 @scalar
 def next_place(axes, place):
-    """Where the next cell is."""
+    """The place of the next cell."""
     x, y, z = place
     if x + 1 < cells_of_axis(axes, 0):
         return x + 1, y, z
@@ -162,6 +167,9 @@ def list_runs(axes, starts, place, runs):
     beyond = wide - 1 if x == 0 else 0  # across the end of the box
     at_end = (wide > 1) & ((x == 0) | (x == wide - 1))
     number = 0
+    # Sorted birds of three cells along x are one run in memory. At an end of a periodic box the
+    # cell beyond it is a run of its own. At a wall such cells are looked at in vain, as they are
+    # out of reach there.
     for dz in range(-beside_z, beside_z + 1):
         for dy in range(-beside_y, beside_y + 1):
             row = (wrapped(z + dz, deep) * high + wrapped(y + dy, high)) * wide
@@ -182,6 +190,9 @@ def look(physics, seen, starts, near, runs, cell, place, pattern):
             seen.sums[k, i] = 0
     number = list_runs(physics.axes, starts, place, runs)
     run, held, first = 0, 0, runs[0, 0]
+    # Birds of all runs are copied into one chunk, across borders of runs, until it is full or the
+    # runs end. Then every bird of the cell adds up this chunk. Sums are integers, so chunks change
+    # no bit.
     while run < number:
         fit = min(runs[1, run] - first, CHUNK - held)
         for j in range(fit):
@@ -197,7 +208,7 @@ def look(physics, seen, starts, near, runs, cell, place, pattern):
 
 @scalar
 def see(physics, seen, near, held, begin, end, pattern):
-    """Let the birds of a cell see those near; what only fills the lanes counts for nothing."""
+    """Add the birds near to the sums of the birds of a cell; lanes without a bird add nothing."""
     d, top = len(pattern), (held + LANES - 1) // LANES * LANES
     if asks_number(physics):
         for j in range(held):

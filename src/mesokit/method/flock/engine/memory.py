@@ -1,4 +1,4 @@
-"""Where birds lie in memory: groups of arrays by name, and what follows from a case."""
+"""The memory of birds: groups of arrays by name, and numbers that follow from a case."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def axes_of(size: Sequence[float], closed: Sequence[bool], side: float, most: in
 
 
 def rows_of(dimension: int, cohesion: bool) -> int:
-    """How many sums there are for each bird."""
+    """The number of sums of each bird."""
     return dimension * (3 if cohesion else 1) + 1
 
 

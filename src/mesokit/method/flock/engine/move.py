@@ -31,13 +31,13 @@ def store(strip, first, i, values):
 
 @elementwise
 def boxes_away(inverse, r):
-    """How many boxes away a place is, along each axis."""
+    """The image count of a place along each axis."""
     return "floor(r[{k}] * inverse[{k}])"
 
 
 @elementwise
 def inside(size, away, r):
-    """A place brought back so many boxes; what is rounded to the length is at 0."""
+    """A place brought back by so many boxes; one that is rounded to the length becomes 0."""
     return "_inside(size[{k}], r[{k}] - away[{k}] * size[{k}], away[{k}])"
 
 
@@ -71,6 +71,8 @@ def move(physics, counter, birds, sums, strip, side, first, count):
     headings, places = birds.headings[side], birds.places[side]
     images, numbers = birds.images[side], birds.numbers[side]
     heading, place, away, number = rows, rows + d, rows + 2 * d, rows + 3 * d
+    # Copy in, turn, fly, copy out. Rows of one scratch array are known not to overlap, so `turn`
+    # and `fly` become loops over vectors; these copies are the price.
     for k in range(rows):
         for i in range(count):
             strip[k * STRIP + i] = float(sums[k, past(first, i)])

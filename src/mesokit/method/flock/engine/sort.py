@@ -41,7 +41,7 @@ def part(number, worker):
 
 @inner
 def sort(worker, axes, birds, seen, cells, side):
-    """Sort birds from `side` to the other side, and say what they see of one another."""
+    """Sort birds from `side` to the other side, and copy what they see of one another."""
     n, number = birds.numbers.shape[1], len(cells.starts) - 1
     first, last = part(n, worker)
     count(axes, birds.places, cells, worker.thread, side, first, last)
@@ -59,6 +59,8 @@ def count(axes, places, cells, thread, side, first, last):
     """The cells of birds, and how many are in each."""
     counts = cells.counts[thread]
     counts[:] = 0
+    # Cells follow from places as 32-bit integers, as the sums do. So a bird cannot lie in one cell
+    # by its place and in another by its copy.
     for i in range(first, last):
         cell = 0
         for j in range(len(axes.size)):
@@ -79,6 +81,8 @@ def add_up(worker, cells, number):
     """Birds and work in the cells of this thread."""
     first, last = part(number, worker)
     birds = work = 0
+    # From here on threads share cells instead of birds: totals of each share, from which all
+    # offsets follow.
     for cell in range(first, last):
         here = 0
         for thread in range(worker.threads):
@@ -90,9 +94,11 @@ def add_up(worker, cells, number):
 
 @inner
 def share_out(worker, cells, number):
-    """Where the birds of each cell and thread go."""
+    """Find the first place of the birds of each cell and thread."""
     first, last = part(number, worker)
     place = work = 0
+    # Where this share of cells begins: after the birds in the shares of threads before. Then each
+    # count becomes the first place of a thread's birds in a cell, so that `scatter` needs no locks.
     for thread in range(worker.thread):
         place += cells.totals[thread, 0]
         work += cells.totals[thread, 1]
@@ -131,6 +137,8 @@ def cells_of(worker, cells):
     """The cells that a thread looks at: about the same work for each."""
     work, number = cells.work, len(cells.work) - 1
     ends = (0, 0)
+    # Bisection in the running sum of work. The end of a thread is the start of the next one, by the
+    # same search, so every cell has exactly one thread.
     for k in range(2):
         wanted = work[number] * (worker.thread + k) // worker.threads
         low, high = 0, number

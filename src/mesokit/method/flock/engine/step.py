@@ -30,12 +30,15 @@ def step(worker, counter, steps, side, physics, flock):
 
 @inner
 def look_and_move(worker, now, physics, flock, side):
-    """What the birds of this thread see, and where they turn and go to: a strip at a time."""
+    """Add up the sums of the birds of this thread, turn and move them: a strip at a time."""
     birds, seen, cells, scratch = flock.birds, flock.seen, flock.cells, flock.scratch
     near, runs = scratch.near[worker.thread], scratch.runs[worker.thread]
     strip, pattern = scratch.strip[worker.thread], physics.axes.size
     begin, end = cells_of(worker, cells)
     done, place = cells.starts[begin], place_of_cell(physics.axes, begin)
+    # Sums at t for the birds of a cell. When a strip of birds has its sums, it turns and moves, t
+    # -> t + dt. Other threads may still look at these birds: they read the copies in `seen`, which
+    # remain those at t. Cells have about equal work for each thread.
     for cell in range(begin, end):
         looked = cells.starts[cell + 1]
         if looked > cells.starts[cell]:

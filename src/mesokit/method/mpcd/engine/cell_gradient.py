@@ -1,6 +1,6 @@
 """The gradient, over neighbouring cells, of one of the sums that a collision rule adds up.
 
-Rules that do not ask for it have no field, and nothing of this is compiled for them.
+Without such a rule there is no field, and nothing of this is compiled.
 """
 
 from typing import Any, NamedTuple
@@ -31,7 +31,7 @@ class Field(NamedTuple):
 
 @by_type
 def fill_field(worker, physics, fluid):
-    """Write down the sum of every cell where a rule asks for its gradient; all threads meet."""
+    """Store the sum of every cell if a rule needs its gradient; ends with a barrier."""
     asked = len(field_of(field_of(fluid, "cells"), "field")) > 0
     return _fill_field if asked else lambda worker, physics, fluid: None
 
@@ -41,6 +41,9 @@ def _fill_field(worker, physics, fluid):
     term, width = cells.field.term, sums_length(len(physics.terms))
     batches = (cells.number + LANES - 1) // LANES
     first, last = share(batches, worker.thread, worker.threads)
+    # The integer sums of all threads as one float for each cell. Shares are those of `collide`,
+    # whole batches. Gradients read neighbouring cells of other threads: hence the barrier after
+    # this.
     for cell in range(first * LANES, min(last * LANES, cells.number)):
         number, total = np.int64(0), np.int64(0)
         for t in range(cells.sums.shape[0]):
@@ -62,7 +65,7 @@ def next_along(i, step, cells, closed):
 
 @by_type
 def gradient_at(field, cell):
-    """The gradient at a cell, per cell of length; () where no rule asks for it.
+    """The gradient at a cell, per cell of length; () where no rule needs it.
 
     Differences of neighbours along an axis, weighted across it by 1/6, 4/6, 1/6: the error of
     leading order is then the same in every direction.
@@ -74,9 +77,11 @@ def gradient_at(field, cell):
 
 def _gradient_2d(field, cell):
     values, nx, ny = field.values, field.cells[0], field.cells[1]
-    cell = min(cell, nx * ny - 1)  # lanes beyond the last cell answer for nobody
+    cell = min(cell, nx * ny - 1)  # lanes beyond the last cell are not used
     x, y = cell % nx, cell // nx
     gx = gy = 0.0
+    # Central differences along each axis in three parallel rows, weighted across by 1/6, 4/6, 1/6,
+    # over the distance of two cells. At a wall the cell stands for its missing neighbour.
     for step in range(-1, 2):
         weight = 1.0 / 3.0 if step == 0 else 1.0 / 12.0
         row = next_along(y, step, ny, field.closed[1]) * nx
@@ -95,6 +100,8 @@ def _gradient_3d(field, cell):
     cell = min(cell, nx * ny * nz - 1)
     x, y, z = cell % nx, cell // nx % ny, cell // (nx * ny)
     gx = gy = gz = 0.0
+    # The same over 27 cells: the sign of the offset makes the difference, both other axes the
+    # weight.
     for k in range(-1, 2):
         up = next_along(z, k, nz, field.closed[2]) * ny
         for j in range(-1, 2):

@@ -59,6 +59,8 @@ def grown(
     """
     limits = np.array([[_nearest(pair, kT) for pair in row] for row in solutes.pairs])
     there, before = Placed(solutes.kinds(), box, periods, limits), 0
+    # Molecule by molecule, in the order of ids, each among those that are already there. Random
+    # numbers follow from the seed and the molecule.
     for kind, polymer in enumerate(solutes.polymers):
         molecule = solutes.molecule(kind)
         pool = np.zeros((1, len(box)))

@@ -69,6 +69,8 @@ def grown(
     system.fill(places, v / math.sqrt((v * v).mean()), np.zeros((n, 1 if d == 2 else 3)))
     until = (1 / small - 1) / growth
     windows = math.floor(until / window)
+    # Lubachevsky and Stillinger: diameters grow at a constant rate while spheres collide.
+    # Collisions with growing spheres add energy, so velocities are scaled back after each window.
     try:
         for k in range(windows):
             system.run_to(k + 1, 0.0)

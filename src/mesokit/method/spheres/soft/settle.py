@@ -79,6 +79,8 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
     system.fill(places, np.zeros((n, d)), np.zeros(n if d == 2 else (n, 3)))
     system.find_forces(0.0)
     done, fall = 0, math.sqrt(2 * height / g)
+    # Steps of the dissipative dynamics until the largest kinetic energy is below a small part of m
+    # g d. Not before the time of a free fall through the box: at the top all are slow.
     while done * step < MOST_FALLS * fall:
         system.run(done, LOOK)
         done += LOOK

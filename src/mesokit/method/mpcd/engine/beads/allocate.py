@@ -97,7 +97,7 @@ def _neighbours(given: Solutes, box: NDArray[Any], closed: tuple[bool, ...], thr
 
 
 def cells_of_beads(reach: float, box: NDArray[Any], closed: tuple[bool, ...]) -> tuple[int, ...]:
-    """How many cells along each axis in which beads are looked for that are so near."""
+    """The number of cells along each axis for neighbour lists of this reach."""
     cells = tuple(int(length / reach) for length in box)
     cells = tuple(
         number if number >= 3 or shut else 1 for number, shut in zip(cells, closed, strict=True)

@@ -1,4 +1,4 @@
-"""Which of several potentials acts on a bond, an angle or a pair: kinds of solutes differ.
+"""The choice of the potential of a bond, an angle or a pair where kinds of solutes differ.
 
 Where there is one potential for all nothing is looked up, and none of this is compiled.
 """

@@ -1,4 +1,4 @@
-"""Cells that hold beads: what their particles and beads need together in order to collide.
+"""Cells that hold beads: coefficients of the collision for particles and beads together.
 
 Cells add up the fluid alone, which then pays nothing for beads. For the few cells with beads the
 sums are completed here, each by the thread whose share of `collide` it is in, and what follows from
@@ -32,7 +32,7 @@ NO_BEAD = -1
 
 @by_type
 def join_beads(worker, now, physics, fluid, beads):
-    """Answers for the cells with beads, from sums that `collide` is about to clear."""
+    """Coefficients for cells with beads, from sums that `collide` is about to clear."""
     if not collides(beads):
         return lambda worker, now, physics, fluid, beads: None
     return lambda worker, now, physics, fluid, beads: _join(
@@ -42,7 +42,7 @@ def join_beads(worker, now, physics, fluid, beads):
 
 @scalar
 def cells_of_thread(worker, number):
-    """First and last + 1 of the cells that `collide` leaves to a thread."""
+    """First and last + 1 of the cells of a thread in `collide`."""
     first, last = share((number + LANES - 1) // LANES, worker.thread, worker.threads)
     return first * LANES, min(last * LANES, number)
 
@@ -51,12 +51,17 @@ def cells_of_thread(worker, number):
 def _join(worker, now, physics, cells, beads):
     first, last = cells_of_thread(worker, cells.number)
     present = number_of(beads.halo, len(beads.cell), PRESENT)
+    # Link the beads of each cell. Every thread reads all beads, but links only cells of its own
+    # share of `collide`. Beads come by id, so each list has one order for any threads and ranks.
     for n in range(present):
         i = bead_of(beads.halo, PRESENT, n)
         cell = beads.cell[i]
         if first <= cell < last:
             beads.following[i] = beads.head[cell]
             beads.head[cell] = i
+    # The bead at the head of each list stands for its cell: coefficients for fluid and beads
+    # together are computed once for each. This must precede `collide`, which clears the sums of the
+    # fluid.
     for n in range(present):
         i = bead_of(beads.halo, PRESENT, n)
         cell = beads.cell[i]
@@ -69,7 +74,7 @@ def _join(worker, now, physics, cells, beads):
 
 @scalar
 def answer_for(beads, leader, physics, counter, cells, cell):
-    """What all in the cell of that bead, the first of its list, need to collide."""
+    """The coefficients of the cell of a bead, the first of its list, with all beads in it."""
     found, key = sums_of_cell(cells.sums, cell, physics.terms), key_of(cells.shared, cell)
     n, mass, momentum, energy, own = read_sums(physics, found)
     mass = mass if n > 0.5 else 0.0
@@ -78,6 +83,7 @@ def answer_for(beads, leader, physics, counter, cells, cell):
         beads.solvent, beads, physics, counter, key, total
     )
     i = leader
+    # Sums of beads are floats, so their order matters: it is that of the list.
     while i != NO_BEAD:
         given = load_values(beads.given, np.uint64(i * len(beads.terms)), beads.terms)
         more, its_energy, its_own = parts_of(given, physics.zero)
@@ -132,7 +138,7 @@ def _with_random_solvent(solvent, beads, physics, counter, cell, total):
 
 @by_type
 def answer_beads(worker, now, physics, fluid, beads):
-    """Put these answers in the place of those that `collide` found without beads."""
+    """Replace the coefficients that `collide` found without beads."""
     if not collides(beads):
         return lambda worker, now, physics, fluid, beads: None
     return _put_answers

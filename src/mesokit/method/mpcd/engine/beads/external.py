@@ -1,4 +1,4 @@
-"""What acts on single beads from outside: pulls, traps, magnetic fields."""
+"""External forces on single beads: pulls, traps, magnetic fields."""
 
 from __future__ import annotations
 

@@ -52,6 +52,8 @@ def _move(worker, now, physics, fluid, beads):
     before = now.counter.step - (1 if now.flags & STREAM else 0)
     box = at_time(now.box, before * physics.timestep)
     if now.flags & COLLIDE:  # v: the collision at t
+        # Beads take the coefficients of their cells, like particles of the fluid. Each bead belongs
+        # to one thread.
         for n in range(first, last):
             i = bead_of(halo, OWN, n)
             collide_bead(beads, i, physics, box, now.old, fluid.cells.coefficients)
@@ -59,9 +61,7 @@ def _move(worker, now, physics, fluid, beads):
             for n in range(first, last):
                 add_bead_flux(beads, n, physics, now.box, now.old.shift, 1)
     if now.flags & STREAM:  # r, v: t -> t + dt; cells at t + dt
-        assign_beads(
-            worker, now, physics, box, fluid, beads
-        )  # ranks: whose they are, and who is near
+        assign_beads(worker, now, physics, box, fluid, beads)  # ranks: owners and copies
         together = threads_for(worker, beads)
         first, last = beads_of_thread(worker, together, beads)
         if worker.thread >= together:
@@ -78,7 +78,7 @@ def _move(worker, now, physics, fluid, beads):
 
 @scalar
 def threads_for(worker, beads):
-    """How many threads move the beads together: all, or one where they are few."""
+    """The number of threads that move the beads: all, or one if there are few beads."""
     number = number_of(beads.halo, len(beads.cell), OWN)
     groups = (number + GROUP - 1) // GROUP
     return worker.threads if groups >= LEAST * worker.threads else 1
@@ -119,7 +119,7 @@ def bin_bead(beads, i, physics, now):
 
 @scalar
 def add_bead_flux(beads, n, physics, box, shift, when):
-    """What the nth bead carries of the stress; its velocity in its cell is that of the image there.
+    """Add the part of the nth bead in the stress, with its velocity in the image of its cell.
 
     `when` is 0 before a collision, 1 after it.
     """

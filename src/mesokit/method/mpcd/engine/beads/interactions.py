@@ -1,4 +1,4 @@
-"""What a traversal of bonds, angles, pairs and walls asks of each: its force, energy or virial.
+"""The sums of a traversal over bonds, angles, pairs and walls: force, energy or virial.
 
 The class of `asked` picks one of these when the calling loop is compiled. Each adds its part to
 `total`, a tuple: the force on a bead has as many numbers as there are axes, the energy one, and

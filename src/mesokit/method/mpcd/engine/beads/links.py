@@ -1,4 +1,4 @@
-"""All bonds, angles and pairs of the molecules of a fluid, whatever is asked of them.
+"""The loop over all bonds, angles and pairs of the molecules of a fluid: kicks or virials.
 
 WIDTH molecules lie side by side (see `registers`), so that a link is gone through once for all.
 """
@@ -22,9 +22,11 @@ class Kick(NamedTuple):
 
 @scalar
 def each_link(asked, molecule, work, lanes, zero):
-    """Ask of all links, in the lanes that hold molecules; whether a bond is broken."""
+    """Apply `asked` to all links, in the lanes that hold molecules; true if a bond is broken."""
     bonds, angles, pairs = molecule.number
     broken, at = False, 0
+    # Bonds, angles, pairs, in the order of one table. Each link is done for all lanes at once. A
+    # lane has its own molecule, so the order of its sums of floats never depends on threads.
     for _ in range(bonds):
         a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
         broken |= of_linked(asked, molecule.bond, a, b, lanes, zero)
@@ -42,13 +44,13 @@ def each_link(asked, molecule, work, lanes, zero):
 
 @scalar
 def linked(molecule, at, zero):
-    """Where the rows of the bead at a place of the table of links are."""
+    """The slice of the rows of a bead, by its place in the table of links."""
     return bead_at(word(molecule.links, at), zero)
 
 
 @by_type
 def of_angle(angle, asked, a, b, c, lanes, zero):
-    """Of the angle of beads a, b and c, if there is a potential."""
+    """Apply `asked` to the angle of beads a, b and c, if there is a potential."""
     return _of_angle if len(angle) else lambda *_: None
 
 
@@ -59,7 +61,7 @@ def _of_angle(angle, asked, a, b, c, lanes, zero):
 
 @by_type
 def of_pair(pair, asked, a, b, lanes, zero):
-    """Of any two beads a and b, if there is a potential."""
+    """Apply `asked` to the pair of beads a and b, if there is a potential."""
     return _of_pair if len(pair) else lambda *_: None
 
 
@@ -70,12 +72,12 @@ def _of_pair(pair, asked, a, b, lanes, zero):
 
 @generic
 def of_linked(asked, potential, a, b, lanes, zero):
-    """Of two beads that a potential holds together; whether they are farther apart than can be."""
+    """Apply `asked` to a bond or a pair; true if it is longer than its potential allows."""
 
 
 @generic
 def of_angled(asked, potential, a, b, c, lanes, zero):
-    """Of the bonds from bead a to b and on to c."""
+    """Apply `asked` to the angle between the bonds from bead a to b and from b to c."""
 
 
 @of_linked.register(Kick)

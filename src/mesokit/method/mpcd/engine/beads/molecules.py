@@ -33,7 +33,7 @@ from mesokit.scalar.vector import added, added_scaled, chosen, dot, scaled
 
 
 class Batch(NamedTuple):
-    """Which molecules move: lanes from `start` on of the group whose first strip is `strip`."""
+    """The molecules that move: lanes from `start` on of the group whose first strip is `strip`."""
 
     group: int
     strip: int
@@ -113,6 +113,8 @@ def _fly_dimers(worker, now, physics, fluid, batch):
     a, b = work[bead_at(0, zero)], work[bead_at(1, zero)]
     if now.flags & MEASURE_STRESS:
         _exact_virial(physics, a, b, batch.lanes, fluid.taken.tensor[2, batch.group])
+    # Closed form of a timestep, t -> t + dt. The centre of mass falls freely; the separation of the
+    # beads is a harmonic oscillator.
     for i in range(WIDTH):
         r, v = load_bead(a, i, 0, zero), load_bead(a, i, d, zero)
         r2, v2 = load_bead(b, i, 0, zero), load_bead(b, i, d, zero)
@@ -168,13 +170,14 @@ def _drift(moving, counter, physics, time, k):
 
 
 def _drift_among_solids(moving, counter, physics, time, k):
-    # Beads that may hit a surface stay behind in the first loop, as in `stages.fly`. How far they
-    # may go is known from where the timestep started: so the whole way from there counts.
     batch, fluid, thread, zero = moving.batch, moving.fluid, moving.worker.thread, physics.zero
     d, rest, bead = len(zero), scaled(0.0, zero), fluid.scratch.beads[thread][bead_at(k, zero)]
     clear = fluid.scratch.clear[thread, k * SCRATCH_ROW + batch.start : (k + 1) * SCRATCH_ROW]
     hits, impulse = fluid.scratch.marks[thread], fluid.taken.impulse[thread]
     any_hit = np.int64(0)
+    # A sub-step as vectors: beads that may hit a surface stay behind, as in `stages.fly`. The clear
+    # distance is that around the place at the start of the timestep, so the whole displacement from
+    # there counts. The second loop moves them, with reflections.
     for i in range(WIDTH):
         r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, d, zero)
         there, start = added_scaled(r, time, v), load_bead(bead, i, 2 * d, zero)
@@ -197,10 +200,12 @@ def _drift_among_solids(moving, counter, physics, time, k):
 
 @scalar
 def note_broken_bonds(moving, step, molecule, zero):
-    """Look for the bonds that are longer than they can be (seldom called)."""
+    """Find the bonds that are longer than their potential allows (seldom called)."""
     batch, ident, thread = moving.batch, moving.fluid.particles.ident, moving.worker.thread
     work, faults = moving.fluid.scratch.beads[thread], moving.fluid.taken.faults[thread]
     (bonds, _, _), base = molecule.number, batch.strip * LANES + batch.start
+    # The kick only shows that some bond of the batch is broken, or of its spare lanes. Here broken
+    # bonds are found one by one, with the ids of their beads.
     for n in range(bonds):
         one, other = word(molecule.links, 2 * n), word(molecule.links, 2 * n + 1)
         a, b = work[bead_at(one, zero)], work[bead_at(other, zero)]

@@ -1,4 +1,4 @@
-"""How the beads of solutes move in a sub-step: straight, with reflections, and by their forces."""
+"""A sub-step of the beads of solutes: straight flight with reflections, and kicks by forces."""
 
 from typing import Any, NamedTuple
 
@@ -22,7 +22,7 @@ from mesokit.method.mpcd.engine.beads.state import (
 from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick
 from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid, momentum_scale
-from mesokit.method.mpcd.engine.domains.beads.halo import tell_places
+from mesokit.method.mpcd.engine.domains.beads.halo import update_copies
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.scalar.jit import by_type
@@ -43,7 +43,7 @@ class MovingBeads(NamedTuple):
 
 @drift.register(MovingBeads)
 def _(moving, counter, physics, time):
-    barrier(moving.worker)  # nobody looks at the places before any more
+    barrier(moving.worker)  # all threads have read the places at the start of the sub-step
     for n in range(moving.first, moving.last):
         i = bead_of(moving.beads.halo, OWN, n)
         drift_bead(moving.beads, i, counter, physics, time, moving.impulse)
@@ -71,7 +71,7 @@ def _drift_among_solids(beads, i, counter, physics, time, impulse):
 def _(moving, step, box, physics, time):
     beads, worker, zero = moving.beads, moving.worker, physics.zero
     barrier(worker)
-    tell_places(worker, beads)  # ranks: where they are now
+    update_copies(worker, beads)  # ranks: places of beads near other blocks
     refresh(worker, beads.neighbours, beads.halo, box, beads.r, zero)
     if moving.measured:
         for n in range(moving.first, moving.last):

@@ -1,4 +1,4 @@
-"""Which beads are near which: lists that hold for as long as nobody has gone half a skin.
+"""Neighbour lists of beads, which hold until a bead has moved by half a skin.
 
 A list is in the order of the beads' numbers and reaches beyond the potential: what it holds too
 much adds nothing, so that forces have the same bits whenever it was made. A bead with more
@@ -35,8 +35,8 @@ class Neighbours(NamedTuple):
     leading to the next, -1 last.
     count (beads,), near (beads, most): the lists.
     made_at (beads, d), boxes (beads,): where beads were then, and in which image along y.
-    noted (threads, GAP): what each thread knows: square of the farthest that one of its beads has
-    gone, the offset of the images when the lists were made, and whether there are any.
+    noted (threads, GAP): of each thread, the square of the longest displacement of its beads, the
+    offset of the images when the lists were made, and whether there are any.
     """
 
     reach: float
@@ -65,7 +65,7 @@ def _apart(box, r, other):
 
 @scalar
 def nearest_image(box, r, other):
-    """That of a box whose images stand still."""
+    """The vector to the nearest image in a box whose images are at rest."""
     separation = added_scaled(other, -1.0, r)
     for k in range(len(r)):
         boxes = rint(separation[k] * box.inverse[k])
@@ -80,21 +80,23 @@ def _apart_sliding(box, r, other):
 
 @by_type
 def offset_of_images(box):
-    """How far the image above is displaced now."""
+    """The present displacement of the image above, along x."""
     return (lambda box: box.offset) if box.instance_class in SLIDING else (lambda box: 0.0)
 
 
 @scalar
 def slipped(lists, box, thread):
-    """How far the images have slid since the lists were made."""
+    """The displacement of the images since the lists were made, along x."""
     moved = offset_of_images(box) - lists.noted[thread, OFFSET]
     return moved - rint(moved * box.inverse[0]) * box.size[0]
 
 
 @scalar
 def note_moves(lists, halo, box, thread, places, share_of, zero):
-    """Find how far the beads of this thread have gone against what is next to them."""
+    """Note the longest displacement of this thread's beads, relative to their surroundings."""
     (first, last), slip, farthest = share_of, slipped(lists, box, thread), 0.0
+    # Displacements since the lists were made. Under shear images slide meanwhile: for a
+    # bead that was `boxes` images up along y, as many slips are taken off along x.
     for n in range(first, last):
         i = bead_of(halo, AROUND, n)
         at = np.uint64(i * len(zero))
@@ -119,14 +121,14 @@ def lists_outdated(lists, box, worker):
 
 @by_type
 def refresh(worker, lists, halo, box, places, zero):
-    """Make the lists anew if they may miss somebody; nothing without a pair potential."""
+    """Make the lists anew if they may miss a pair; nothing without a pair potential."""
     return _refresh if len(lists) else lambda worker, lists, halo, box, places, zero: None
 
 
 def _refresh(worker, lists, halo, box, places, zero):
     (lists,) = lists
-    everybody = len(lists.cell)
-    around = share(number_of(halo, everybody, AROUND), worker.thread, worker.threads)
+    every = len(lists.cell)
+    around = share(number_of(halo, every, AROUND), worker.thread, worker.threads)
     note_moves(lists, halo, box, worker.thread, places, around, zero)
     barrier(worker)
     if lists_outdated(lists, box, worker):
@@ -136,7 +138,7 @@ def _refresh(worker, lists, halo, box, places, zero):
         barrier(worker)
         link(lists, halo, share(len(lists.head), worker.thread, worker.threads))
         barrier(worker)
-        first, last = share(number_of(halo, everybody, OWN), worker.thread, worker.threads)
+        first, last = share(number_of(halo, every, OWN), worker.thread, worker.threads)
         for n in range(first, last):
             make_list(lists, box, places, bead_of(halo, OWN, n), zero)
         barrier(worker)
@@ -144,7 +146,7 @@ def _refresh(worker, lists, halo, box, places, zero):
 
 @seldom
 def find_cells(lists, halo, box, places, share_of, zero):
-    """Where these beads are, and in which cells."""
+    """Find the cells of these beads, and store their places."""
     still = scaled(0.0, zero)
     for n in range(share_of[0], share_of[1]):
         i = bead_of(halo, AROUND, n)
@@ -158,9 +160,11 @@ def find_cells(lists, halo, box, places, share_of, zero):
 
 @seldom
 def link(lists, halo, cells):
-    """The beads of these cells, each thread's own, the last first."""
+    """Link the beads of the cells of this thread; the last bead comes first."""
     first, last = cells
     lists.head[first:last] = -1
+    # Every thread reads all beads and links those of its own cells, so no two write to one cell.
+    # The order in a cell follows from the list of beads, not from threads.
     for n in range(number_of(halo, len(lists.following), AROUND)):
         i = bead_of(halo, AROUND, n)
         cell = lists.cell[i]
@@ -171,7 +175,7 @@ def link(lists, halo, cells):
 
 @seldom
 def make_list(lists, box, places, i, zero):
-    """All within reach of bead i, in order."""
+    """List all beads within reach of bead i, by id."""
     d, still, found = len(zero), scaled(0.0, zero), 0
     mine = load_values(places, np.uint64(i * d), zero)
     r, _, _ = fold(box, mine, still, still)
@@ -179,7 +183,9 @@ def make_list(lists, box, places, i, zero):
     rows, layers = lists.cells[0], lists.cells[0] * lists.cells[1]
     along_z, _ = next_along(lists, box, d - 1, r[d - 1])
     along_y, up = next_along(lists, box, 1, r[1])
-    for b in range(3):  # the image above or below may be displaced along x
+    # The 9 or 27 cells around bead i. y is the outer axis, because the image above or below is
+    # displaced along x under shear. So x and its three cells are found anew for each.
+    for b in range(3):
         x = r[0] - up[b] * slide
         x -= math.floor(x * box.inverse[0]) * box.size[0]
         along_x, _ = next_along(lists, box, 0, x)
@@ -197,9 +203,12 @@ def make_list(lists, box, places, i, zero):
 
 @scalar
 def list_cell(lists, box, places, i, mine, cell, found, zero):
-    """Add those of a cell to the list of bead i; how many it has then."""
+    """Add the beads of a cell to the list of bead i; returns the length of the list."""
     square, most = lists.reach * lists.reach, lists.near.shape[1]
     j = lists.head[cell]
+    # Neighbours are inserted by id. A bead adds up forces in this order, so its sum of floats has
+    # the same bits whenever the list was made. `found` counts on beyond a full list, to mark it
+    # CROWDED.
     while j >= 0:
         separation = apart(box, mine, load_values(places, np.uint64(j * len(zero)), zero))
         if j != i and dot(separation, separation) <= square:

@@ -1,4 +1,4 @@
-"""What observables ask of the beads of solutes, and what a checkpoint keeps of them."""
+"""Readings of the beads of solutes for observables, and their state for checkpoints."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the beads of molecules lie while they move: WIDTH molecules side by side.
+"""The memory of the beads of molecules in flight: WIDTH molecules side by side.
 
 The strips of a group lie far apart in memory. For the many passes of a timestep some molecules at a
 time are copied to one small stretch, which the first-level cache holds: for each bead a row of each

@@ -19,19 +19,19 @@ class Beads(NamedTuple):
     (Neighbours,) or ().
     kinds: which of several potentials act, see `KindsOfLinks`; () where there is one of each.
     r, v (beads * d,): places, whole molecules in one image, and velocities there.
-    bond_starts (beads + 1,), bonds: to whom each bead is linked.
+    bond_starts (beads + 1,), bonds: the beads to which each bead is linked.
     angle_starts (beads + 1,), angles (n, 4): the angles that each bead is in, and as which bead.
     near_wall: (solid, distance) for the potential of walls, or ().
     faults (threads, 8): step and beads of the first bond that tore.
     cell (beads,): of the grid; head (cells,), following (beads,): the beads of each cell.
     given: what each bead adds to the sums of its cell, as long as `terms`, side by side.
-    answers: what the cells of beads need to collide; leads (beads,): whose cell has one.
+    answers: coefficients of the cells of beads; leads (beads,): whether they are at this bead.
     solvent: (mean number, mass of a particle) for random solvent, or ().
     tensor (3, groups, 2 d d): what groups of beads add to the stress: before
     and after the collision, and by forces; whole numbers.
     embedded: (Embedded,) for beads that do not collide but act by a potential, or ().
     external: (External,) for beads that are pulled, trapped or in a magnetic field, or ().
-    halo: which beads are whose where ranks share them (`domains.beads.halo.Halo`), or ().
+    halo: owners and copies of beads where ranks share them (`domains.beads.halo.Halo`), or ().
     """
 
     mass: Any
@@ -61,7 +61,7 @@ class Beads(NamedTuple):
 
 
 class KindsOfLinks(NamedTuple):
-    """Which of several potentials act on what: kinds of solutes, from 0.
+    """The kinds of solutes, from 0, by which several potentials are chosen.
 
     bonds, angles: kind of each entry of `Beads.bonds` and `Beads.angles`; beads (beads,): of each
     bead; number: how many kinds there are.
@@ -73,21 +73,22 @@ class KindsOfLinks(NamedTuple):
     number: int
 
 
-# Places in `Halo.count`: own beads, these and those heard of, those in own cells.
+# Places in `Halo.count`: own beads, own beads and copies, beads in own cells.
 OWN, AROUND, PRESENT = 0, 1, 2
 
 
 @by_type
-def number_of(halo, everybody, which):
-    """How many beads a rank has, knows of, or finds in its cells (`which`): all, without ranks."""
+def number_of(halo, every, which):
+    """Number of beads that a rank owns, or has with copies, or in its cells (`which`); all beads
+    without ranks."""
     if len(halo) == 0:
-        return lambda halo, everybody, which: everybody
-    return lambda halo, everybody, which: halo.count[which]
+        return lambda halo, every, which: every
+    return lambda halo, every, which: halo.count[which]
 
 
 @by_type
 def bead_of(halo, which, n):
-    """Number of the nth of these."""
+    """Id of the nth of these."""
     if len(halo) == 0:
         return lambda halo, which, n: n
     return lambda halo, which, n: halo.numbers[which, n]
@@ -111,7 +112,7 @@ def inverse_mass_of(beads, i):
 
 @scalar
 def load_place(beads, i, zero):
-    """Where bead i is, in the image that it started in."""
+    """The place of bead i, in the image in which it started."""
     return load_values(beads.r, np.uint64(i * len(zero)), zero)
 
 

@@ -1,4 +1,4 @@
-"""All bonds, angles, pairs and walls that act on a bead, whatever is asked of them.
+"""The sums over all bonds, angles, pairs and walls of a bead: forces, energies or virials.
 
 Each bead has a sum of its own (see `interactions`), always added up in one order, so that threads
 share the beads without sharing sums.
@@ -20,7 +20,7 @@ from mesokit.scalar.vector import added, added_scaled
 
 @scalar
 def each_on_bead(asked, total, beads, i, r, box):
-    """Of all that acts on bead i, which is at r."""
+    """Add all that acts on bead i at r to the total."""
     given = beads.potentials
     total = each_bond(given.bond, asked, total, beads, i, r)
     total = each_angle(given.angle, asked, total, beads, i, r)
@@ -36,7 +36,7 @@ def nothing(total):
 
 @by_type
 def each_bond(bond, asked, total, beads, i, r):
-    """Of all bonds of bead i."""
+    """Add all bonds of bead i."""
     return _each_bond if len(bond) else lambda bond, asked, total, beads, i, r: total
 
 
@@ -52,7 +52,7 @@ def _each_bond(bond, asked, total, beads, i, r):
 
 @by_type
 def each_angle(angle, asked, total, beads, i, r):
-    """Of all angles that bead i is in."""
+    """Add all angles with bead i."""
     return _each_angle if len(angle) else lambda angle, asked, total, beads, i, r: total
 
 
@@ -70,7 +70,7 @@ def _each_angle(angle, asked, total, beads, i, r):
 
 @by_type
 def each_pair(pair, asked, total, beads, i, r, box):
-    """Of all beads near bead i; one whose list is too short looks at all, itself too."""
+    """Add all pairs of bead i: those on its list or, if the list is crowded, with all beads."""
     return _each_pair if len(pair) else lambda pair, asked, total, beads, i, r, box: total
 
 
@@ -87,7 +87,7 @@ def _each_pair(pair, asked, total, beads, i, r, box):
 
 @by_type
 def at_wall(wall, asked, total, beads, r):
-    """Of the nearest surface."""
+    """Add the nearest surface."""
     return _at_wall if len(wall) else lambda wall, asked, total, beads, r: total
 
 

@@ -22,6 +22,8 @@ def verlet(moving, now, physics, substeps):
 
 def _verlet(moving, now, physics, substeps):
     step, time = now.counter.step, physics.timestep / substeps
+    # With h = dt / substeps: after kick n, r is at t + n h and v at t + (n + 1/2) h. The first and
+    # the last kick are half ones, so v ends at t + dt. The two half kicks between drifts are one.
     for n in range(substeps + 1):
         if n > 0:  # r: t + (n - 1) h -> t + n h
             at = Counter(now.counter.seed, step + (n << SUBSTEP_BITS))

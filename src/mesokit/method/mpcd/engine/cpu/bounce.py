@@ -51,6 +51,9 @@ def bounce(physics, timestep, counter, particle, r, v, a, impulse):
     # hits on one surface are added before they are rounded: there may be many small ones
     surface, given = 0, scaled(0.0, v + outer(v, v))
     contact = last = unmet(solid)
+    # Hit after hit, until no surface is met in the time that is left. A long flight comes in pieces
+    # of REACH, which end without a hit. The place stays in the box; `away` adds up its jumps by
+    # whole boxes. Random numbers follow from id and hit, so the order of particles is free.
     for n in range(MOST_HITS):
         hit, contact = first_hit(solid, x, u, a, time, contact)
         if hit > time:

@@ -1,4 +1,4 @@
-"""One pass over all cells: from the sums over their particles to what these need to collide."""
+"""One pass over all cells: from the sums over their particles to coefficients of the collision."""
 
 from typing import Any, NamedTuple
 
@@ -30,15 +30,17 @@ MOST_DRAWS = 1000  # of a thermostat's random number, each accepted with more th
 
 @scalar
 def total_block(sums, start, count, totals, terms):
-    """Add up what the threads found for these cells, and clear it.
+    """Add up the sums of all threads for these cells, and clear them.
 
-    A thread that found nothing in four cells is passed over, so that no other writes to its memory.
+    Sums that are 0 in four cells are only read: so threads seldom write to memory of others.
     """
     none = nothing_found(terms)
     for i in range(LANES):
         store_scratch(totals, i, none)
     together = count - count % QUAD
     length = np.uint64(sums_length(len(terms)))
+    # Integer sums of all threads for one batch of cells. A cell belongs to the batch of one thread,
+    # which also clears it for the next step, so there is no race. Four empty cells cost one test.
     for t in range(sums.shape[0]):
         for i in range(0, together, QUAD):
             found = np.int64(0)
@@ -70,7 +72,7 @@ def put_block(coefficients, start, count, rows, c):
 
 @scalar
 def draw_with_care(physics, counter, cell, free):
-    """The thermostat's random number where a guess was not sure."""
+    """The thermostat's random number where the guess is not certain."""
     x, good = draw(physics.thermostat, counter, cell, free, 0)
     attempt = 1
     while not good and attempt < MOST_DRAWS:
@@ -81,7 +83,7 @@ def draw_with_care(physics, counter, cell, free):
 
 @by_type
 def as_many(answer, coefficients):
-    """The answer of a rule, for which there is room."""
+    """The coefficients of a rule; raises if their number is not the declared one."""
     if len(answer) != len(coefficients):
         raise TypeError(
             f"coefficients gives {len(answer)} numbers; coefficient_count says {len(coefficients)}"
@@ -91,11 +93,11 @@ def as_many(answer, coefficients):
 
 @scalar
 def needs_of_cell(physics, counter, cell, found, gradient, certain):
-    """What the particles of a cell need in order to collide, and whether that is sure.
+    """The coefficients of the collision in a cell, and whether they are certain.
 
-    `gradient` is that of the sum of which the rule asks for it, and follows its own sums.
+    `gradient` is that of the sum for which the rule declares it; it follows the rule's own sums.
 
-    A thermostat only guesses its random number, unless it must be `certain`: that takes longer.
+    The thermostat's random number is a guess, unless it must be `certain`: that takes longer.
     """
     n, mass, momentum, energy, own = read_sums(physics, found)
     sums = Cell(n, mass, momentum, energy, own + gradient)
@@ -109,7 +111,7 @@ def needs_of_cell(physics, counter, cell, found, gradient, certain):
 
 @seldom
 def sure_needs(physics, counter, cell, found, gradient):
-    """What the particles of a cell need where a guess was not sure; for few cells."""
+    """The coefficients of a cell where the guess was not certain; for few cells."""
     answer, _ = needs_of_cell(physics, counter, cell, found, gradient, True)
     return answer
 
@@ -120,8 +122,8 @@ class InRow(NamedTuple):
     start: int
 
 
-class Asked(NamedTuple):
-    """Cells that rows of numbers name in their first column: so many `cells`, from a row on."""
+class OfRows(NamedTuple):
+    """Cells whose numbers are the first column of rows of a message: so many, from a row on."""
 
     rows: Any
     start: int
@@ -138,11 +140,14 @@ def cell_at(which, i):
 
 @scalar
 def settle_batch(worker, counter, physics, fluid, which, count):
-    """What the cells of a batch need to collide: rows of coefficients from rows of sums."""
+    """Coefficients of the cells of a batch: rows of coefficients from rows of sums."""
     cells, scratch = fluid.cells, fluid.scratch
     rows, totals = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
     doubtful, none = scratch.marks[worker.thread], nothing_found(physics.terms)
     in_doubt = np.int64(0)
+    # Thermostat and rule for all lanes without branches, as vectors; lanes beyond the last cell are
+    # computed and not used. The thermostat's number is a guess, and lanes note whether it is
+    # certain.
     for i in range(LANES):
         found, cell = load_scratch(totals, i, none), cell_at(which, i)
         gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
@@ -150,6 +155,8 @@ def settle_batch(worker, counter, physics, fluid, which, count):
         doubtful[i] = 1 - np.int64(sure)
         in_doubt |= doubtful[i]
         store_scratch(rows, i, answer)
+    # The few uncertain cells draw again, one by one. Random words follow from the step and from the
+    # number of the cell in the whole box, so neither batches nor ranks change them.
     for i in range(count if in_doubt != 0 else 0):
         if doubtful[i] != 0:
             found, cell = load_scratch(totals, i, none), cell_at(which, i)
@@ -181,6 +188,8 @@ def _collide(worker, counter, physics, fluid):
     if is_empty(fluid):  # a random solvent is only where beads are
         batches = 0
     first, last = share(batches, worker.thread, worker.threads)
+    # Batches of cells: integer sums become floats once, then coefficients for the collision at
+    # t + dt, which the next sweep does. Each cell is written by one thread.
     for b in range(first, last):
         if not any_own(cells.shared, b):
             continue

@@ -25,8 +25,8 @@ class Part(NamedTuple):
     origin: tuple
     cells: tuple  # number along each axis in the whole box
     inverse: tuple
-    first: tuple  # the first that it knows, along each axis; below 0 across an end of the box
-    known: tuple  # how many it knows
+    first: tuple  # the first held cell along each axis; below 0 across an end of the box
+    known: tuple  # number of held cells along each axis
 
 
 @scalar
@@ -41,7 +41,7 @@ def moved_grid(grid, shift, closed):
 
 @by_type
 def placed(grid, shift, origin):
-    """The same cells elsewhere."""
+    """The same cells with another shift."""
     if grid.instance_class is Grid:
         return lambda grid, shift, origin: Grid(shift, origin, grid.cells, grid.inverse)
     return lambda grid, shift, origin: Part(
@@ -80,7 +80,7 @@ def in_block(limits, place):
 @by_type
 def cell_index(r, grid):
     """Number of the cell at r; x varies fastest. A place that is no number gets the spare cell, and
-    so does one that a rank does not know."""
+    so does a place in a cell that a rank does not hold."""
     return _in_box if grid.instance_class is Grid else _in_part
 
 

@@ -11,7 +11,7 @@ COLLIDE, STREAM, MEASURE_STRESS, MEASURE_WALLS = 1, 2, 4, 8
 
 
 class Course(NamedTuple):
-    """Which steps are to be run, and where the last ones ended."""
+    """The steps to run, and the state in which the last ones ended."""
 
     steps: int
     done: int
@@ -52,7 +52,7 @@ class Cells(NamedTuple):
     number: int
     coefficients: Any  # a record for each cell: what its particles need to collide
     sums: Any  # (threads, ...) fixed-point sums over the particles of each cell
-    field: tuple  # one of these sums in all cells, where the rule asks for its gradient, or ()
+    field: tuple  # one of these sums in all cells, where the rule needs its gradient, or ()
     shared: Any  # with other ranks (`ranks.messages.shared.Shared`), or ()
 
 
@@ -67,7 +67,7 @@ class Scratch(NamedTuple):
 
 
 class Taken(NamedTuple):
-    """What is noted on the way for those who ask."""
+    """Sums of a step for observables, and faults."""
 
     impulse: Any  # (threads, ...) momentum and angular momentum that surfaces took
     tensor: Any  # (2 or 3, strips, 2 d^2) terms of the stress

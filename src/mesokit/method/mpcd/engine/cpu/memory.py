@@ -66,7 +66,7 @@ class Memory:
         self.numbers, self.threads, self.step = numbers, threads, 0
         self.measures, self.domain = frozenset(measures), domain
         self._packing = Packing()
-        self._tables: list[Any] = []  # which compiled code knows by address
+        self._tables: list[Any] = []  # compiled code has their addresses
         self._places, self._placed = np.zeros(0, np.int64), (0, numbers.beads)
         if earlier is None or (numbers.solids and earlier.domain.block != domain.block):
             self.physics = self._physics()
@@ -209,7 +209,7 @@ class Memory:
         )
 
     def _field(self) -> tuple:
-        """Where the sum of which the rule asks for the gradient is written down."""
+        """Memory for the sum of which the rule needs the gradient."""
         numbers = self.numbers
         wanted = numbers.case.fluid.collision.gradient_of
         if wanted is None:

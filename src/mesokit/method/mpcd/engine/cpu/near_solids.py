@@ -1,8 +1,8 @@
-"""How far particles may fly before they meet a solid, looked up for a few lanes together.
+"""The clear distance around particles, looked up for some lanes together.
 
-Particles of a strip lie next to one another, sorted by cell. Where all of a few are far from all
-solids, nobody looks again until one of these may have come near. What takes views of arrays is
-`by_type`, for then numba does not count the users of these arrays.
+Particles of a strip lie next to one another, sorted by cell. If all of some lanes are far from all
+solids, tables are not read again until one of them may be near. Functions that take views of arrays
+are `by_type`, for then numba does not count the users of these arrays.
 """
 
 import math
@@ -22,17 +22,18 @@ ROUNDED_DOWN = 1.0 - 1e-6  # of numbers that float32 may have rounded up
 
 @by_type
 def look_around_strip(solid, strip, s, calm, clear, pattern):
-    """How far each particle of strip s may fly, plates not counted, in as many lanes at a time as
-    `lanes_together` says.
+    """The clear distance of each particle of strip s, plates not counted.
 
-    The answer has a bit for each of these parts: whether all may fly a stride, plates or not.
+    It is found for as many lanes at once as `lanes_together` has.
+
+    The result has a bit for each of these parts: whether a stride is clear, plates or not.
     """
     return _look_around if solid.instance_class is Bodies else lambda *_: 0
 
 
 @by_type
 def lanes_together(solid):
-    """How many lanes are looked at together: those of a strip, fewer among solids in tables."""
+    """The number of lanes with one clear distance: a strip, or fewer for solids in tables."""
     number = FEW if solid.instance_class is Bodies else LANES
     return lambda solid: number
 
@@ -44,6 +45,9 @@ def _look_around(solid, strip, s, calm, clear, pattern):
     plates and of all else: each step takes off a stride, until it is found anew.
     """
     quiet = 0
+    # 64 neighbours in memory share a budget of clear distance, in cells, from plates and from other
+    # solids. Every flight takes at most a stride of it; `forget` clears it after a longer one.
+    # So tables are read only when the budget is used up.
     for part in range(LANES // FEW):
         n, start = s * (LANES // FEW) + part, part * FEW
         if calm[1, n] < solid.stride:
@@ -68,6 +72,8 @@ def look_up(solid, strip, n, calm, clear, pattern):
 
 def _look_up(solid, strip, n, calm, clear, pattern):
     stride = np.int32(np.float32(solid.stride * solid.stride).view(np.int32))
+    # Three loops instead of one: the first and the last become vectors, between them is the gather
+    # from the table. Clearances are squares in float32, rounded down.
     if calm[0, n] < solid.stride:
         for i in range(FEW):
             clear[i] = cube_of(solid, load_particle(strip, i, 0, pattern))
@@ -91,6 +97,7 @@ def room_between_plates(solid, strip, clear, pattern):
 
 def _room_between_plates(solid, strip, clear, pattern):
     least = np.int32(np.float32(MOST_ROOM).view(np.int32))
+    # Axis by axis, as plates lie across axes; a coordinate beyond a plate has no room at all.
     for k in range(len(pattern)):
         if solid.lowest[k] > -np.inf:
             for i in range(FEW):
@@ -104,7 +111,7 @@ def _room_between_plates(solid, strip, clear, pattern):
 
 @scalar
 def forget(calm, s, far):
-    """Let the parts of a strip be looked around anew that `far` has bits for."""
+    """Set the clear distance to 0 for the parts of a strip that have bits in `far`."""
     for part in range(LANES // FEW):
         if (far >> part) & 1 != 0:
             n = s * (LANES // FEW) + part

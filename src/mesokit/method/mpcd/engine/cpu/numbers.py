@@ -1,4 +1,4 @@
-"""What follows from a case before anything lies in memory: how many, how heavy, how exact."""
+"""The numbers that follow from a case before any memory is allocated: counts, masses, precision."""
 
 from __future__ import annotations
 

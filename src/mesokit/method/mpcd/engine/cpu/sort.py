@@ -40,7 +40,7 @@ class Order(NamedTuple):
 
 @kernel
 def sort(worker, zero, box, grid, particles, memory):
-    """Bring everybody back into the box, and those of one cell together."""
+    """Bring all particles back into the box, and those of one cell together."""
     lap(worker, START)
     wrap(worker, zero, box, grid, particles)
     barrier(worker)
@@ -63,13 +63,16 @@ def wrap(worker, zero, box, grid, particles):
     filling, rows = particles.filling, particles.rows
     d, beads = len(zero), beads_of(filling)
     first, last = share(groups_in(filling), worker.thread, worker.threads)
+    # Whole molecules move by the image of their first bead, so that bonds remain plain differences
+    # of coordinates. A thread has whole groups, and each lane depends on its own molecule only.
     for g in range(first, last):
         for bead in range(beads):
             b = g * beads + bead
             strip = particles.data[strip_at(b, rows)]
             for i in range(lanes_in(filling, b), LANES):
                 store_particle(strip, i, 0, zero + zero)
-        for bead in range(beads - 1, -1, -1):  # the first, which decides, at the end
+        # The first bead decides for all, so it is folded last.
+        for bead in range(beads - 1, -1, -1):
             b = g * beads + bead
             places = slice(b * LANES, (b + 1) * LANES)
             strip, image = particles.data[strip_at(b, rows)], particles.image[:, places]
@@ -108,10 +111,13 @@ def order_by_cell(worker, particles, memory):
     cell, filling, ends, thread = particles.cell, particles.filling, memory.ends, worker.thread
     first, last = share(filling.molecules, thread, worker.threads)
     ends[thread] = 0
+    # Counting sort. Each thread counts the molecules of its share of memory, by cell.
     for i in range(first, last):
         ends[thread, cell[place_of_bead(filling, i, 0)]] += 1
     barrier(worker)
-    # from counts to the place of each thread's first molecule of each cell
+    # From counts to the place of each thread's first molecule of each cell, cell by cell and in a
+    # cell thread by thread. Shares of threads are in the order of memory, so the sort is stable for
+    # any number of threads. The barrier is there because other threads read these counts first.
     first_cell, last_cell = share(ends.shape[1], thread, worker.threads)
     total = 0
     for t in range(worker.threads):
@@ -124,6 +130,7 @@ def order_by_cell(worker, particles, memory):
             ends[t, c] = total
             total += here
     barrier(worker)
+    # No two threads have a place in common, so all write to `order` at once.
     for i in range(first, last):
         c = cell[place_of_bead(filling, i, 0)]
         memory.order[ends[thread, c]] = i
@@ -136,6 +143,7 @@ def reorder_row(worker, particles, memory, row, bead):
     """Put one row of the blocks in the new order, through a spare array, for one bead of each."""
     data, filling, rows, spare = particles.data, particles.filling, particles.rows, memory.spare
     first, last = share(filling.molecules, worker.thread, worker.threads)
+    # Not in place: other threads still read rows here until the barrier.
     for j in range(first, last):
         i = place_of_bead(filling, memory.order[j], bead)
         spare[j] = data[place(i, rows, row)]

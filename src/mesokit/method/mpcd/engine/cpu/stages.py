@@ -55,7 +55,7 @@ def clear_of(solid, clear, i):
 def fly(physics, strip, i, r, v, around, hits):
     """Store position and velocity a timestep later; a particle that may hit a surface stays behind.
 
-    The latter is marked in `hits`, and 1 is the answer. `around` is what `touches` asks for.
+    The latter is marked in `hits`, and the result is 1. `around` is an argument of `touches`.
     """
     a = halfway(physics.field, r, v, physics.timestep)
     end, after = fall(r, v, a, physics.timestep)
@@ -80,7 +80,7 @@ def collide_strip(physics, grid, strip, gathered):
 def stream_strip(physics, strip, clear, hits):
     """Positions and velocities a timestep later.
 
-    The answer has a bit for each part of the strip in which particles may have stayed behind.
+    The result has a bit for each part of the strip in which particles may have stayed behind.
     """
     zero = physics.zero
     d = len(zero)
@@ -93,7 +93,7 @@ def stream_strip(physics, strip, clear, hits):
 
 @by_type
 def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits):
-    """The two above in one loop; `quiet` is what `look_around_strip` said."""
+    """The two above in one loop; `quiet` is the result of `look_around_strip`."""
 
     def among_solids(physics, grid, strip, gathered, quiet, clear, hits):
         zero, any_hit = physics.zero, np.int64(0)
@@ -106,6 +106,8 @@ def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits)
 
     def looked_around(physics, grid, strip, gathered, quiet, clear, hits):
         behind = np.int64(0)
+        # Parts of 64 lanes, each with one bit in `behind`. In a quiet part every flight up to a
+        # stride is free, so the loop needs no distance for each lane.
         for part in range(LANES // FEW):
             start = part * FEW
             any_hit = move_few(
@@ -125,7 +127,7 @@ def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits)
 
 @by_type
 def move_few(physics, grid, strip, gathered, quiet, clear, hits):
-    """A part of a strip; where it is quiet, with a simpler question."""
+    """Collide and stream a part of a strip; a quiet part needs a simpler test."""
     return _move_few
 
 
@@ -149,7 +151,7 @@ def _move_few(physics, grid, strip, gathered, quiet, clear, hits):
 def bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
     """Flight of the marked particles, with reflections; what surfaces take goes to impulse.
 
-    `behind` and the answer have a bit for each part of the strip: whether some stayed behind, and
+    `behind` and the result have a bit for each part of the strip: whether some stayed behind, and
     whether any of these then went farther than a stride.
     """
     return _bounce_strip if kind_of_solid(physics) is not Nothing else lambda *_: 0
@@ -158,11 +160,16 @@ def bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
 def _bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
     zero, far, width = physics.zero, 0, lanes_together(physics.solid)
     d = len(zero)
+    # Only particles that stayed behind in `fly` are moved here, with reflections. They are few, so
+    # this loop is scalar. Random numbers of diffuse surfaces follow from ids: order does not
+    # matter.
     for start in range(0, count, width):
         part, marked = start // width, start
         if (behind >> part) & 1 == 0:
             continue
-        for i in range(start, min(start + width, count)):  # their numbers first, without branches
+        # Compact their lanes to the front of the part, without branches. No unread mark is lost,
+        # since `marked` never exceeds i.
+        for i in range(start, min(start + width, count)):
             hit = hits[i]
             hits[marked] = i
             marked += hit
@@ -201,6 +208,8 @@ def bin_strip(physics, now, strip, cell, ident, terms_rows):
     """
     zero = physics.zero
     d = len(zero)
+    # Positions at t + dt, velocities before the collision at t + dt. Terms are rounded to integers
+    # here, lane by lane, so that later sums have no order.
     for i in range(LANES):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         m = lane_mass(physics.masses, strip, i, 2 * d)
@@ -216,6 +225,8 @@ def add_strip(cell, terms_rows, sums, count, terms, tallied):
     """Add the terms of each particle to the sums of its cell, and count it (see `scatter_add`)."""
     width = sums_length(len(terms))
     together = count - count % QUAD
+    # Four lanes at a time as whole vectors, then the rest one by one. Spare lanes are left out:
+    # this is where nonsense in them ends.
     for i in range(0, together, QUAD):
         scatter_add(sums, cell, i, terms_rows, terms, tallied)
     for i in range(together, count):

@@ -11,12 +11,12 @@ from mesokit.method.mpcd.engine.cpu.grid import moved_grid
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM, Now
 from mesokit.method.mpcd.engine.cpu.physics import field_of_step, with_field
 from mesokit.method.mpcd.engine.domains.messages.exchange import (
-    answer_others,
-    give_sums,
-    take_answers,
+    exchange_sums,
+    receive_coefficients,
+    send_coefficients,
 )
 from mesokit.method.mpcd.engine.domains.messages.migrate import (
-    hold_those_here,
+    count_molecules,
     migrate,
     note_done,
     room_left,
@@ -37,15 +37,15 @@ def step(worker, now, physics, fluid, beads, walls):
     fill_walls(worker, now, physics, fluid, walls)  # virtual particles at t + dt
     barrier(worker)
     lap(worker, SWEEP)
-    give_sums(worker, now, physics, fluid, beads)  # ranks: of cells of others
-    follow_flow(worker, now, physics, fluid, walls)  # what they will need to know of the fluid
-    top_up_walls(worker, now, physics, fluid, walls)  # those that depend on the fluid's number
-    fill_field(worker, physics, fluid)  # what cells must know of those next to them
+    exchange_sums(worker, now, physics, fluid, beads)  # ranks: sums to the owners of cells
+    follow_flow(worker, now, physics, fluid, walls)  # flow near surfaces, for the next step
+    top_up_walls(worker, now, physics, fluid, walls)  # up to the mean number of a cell
+    fill_field(worker, physics, fluid)  # sums for gradients over neighbouring cells
     join_beads(worker, now, physics, fluid, beads)  # cells with solutes: sums of both
-    answer_others(worker, now, physics, fluid, beads, walls)  # ranks: who have particles here
+    send_coefficients(worker, now, physics, fluid, beads, walls)  # ranks: to partners
     collide_cells(worker, now, physics, fluid)  # thermostat, rule at t + dt: coefficients
     answer_beads(worker, now, physics, fluid, beads)
-    take_answers(worker, now, physics, fluid, walls)
+    receive_coefficients(worker, now, physics, fluid, walls)  # ranks: from owners of cells
     barrier(worker)
     lap(worker, CELLS)
     recoil(worker, now, physics, fluid, walls)  # what the collision takes from virtual particles
@@ -60,7 +60,7 @@ def advance(worker, course, physics, fluid, beads, walls):
     while n < course.steps and room_left(fluid):
         number, now = interval(worker, course, now, physics, fluid, beads, walls, n)
         n += number
-        hold_those_here(fluid)  # ranks: others may have come
+        count_molecules(fluid)  # ranks: after a migration
     note_done(worker, fluid, n)
     if n > 0:
         now = last_collision(course, now)
@@ -96,5 +96,5 @@ def next_step(course, now, physics, n):
 
 @scalar
 def last_collision(course, now):
-    """What is left to do after the last step."""
+    """The flags of the collision that is left after the last step."""
     return Now(now.counter, now.box, now.grid, now.grid, course.flags | COLLIDE)

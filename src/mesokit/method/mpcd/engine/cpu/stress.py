@@ -1,4 +1,4 @@
-"""What the stress is summed up from: rows of d x d numbers, the kinetic before the collisional.
+"""The terms of the stress: rows of d x d numbers, the kinetic before the collisional.
 
 Whole numbers, `scale` of which are one unit of m v^2: the sums do not depend on their order.
 """
@@ -32,5 +32,5 @@ def within_cell(x):
 
 @scalar
 def fractional_part(x):
-    """What is left of a number above the whole number below it."""
+    """The fractional part of a number, from 0 to 1."""
     return x - floor(x)

@@ -36,7 +36,7 @@ from mesokit.method.mpcd.engine.cpu.stress import flux
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
-from mesokit.method.mpcd.engine.domains.messages.migrate import note_strays
+from mesokit.method.mpcd.engine.domains.messages.migrate import note_migrants
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
 from mesokit.scalar.jit import by_type, seldom
 from mesokit.scalar.vector import added, products
@@ -44,7 +44,7 @@ from mesokit.scalar.vector import added, products
 
 @by_type
 def stream_fluid(worker, now, physics, fluid):
-    """Do what the flags ask, in this order, for each strip in turn.
+    """Do the stages that the flags have, in this order, for each strip in turn.
 
     Time levels: velocities of step n before COLLIDE, after it; positions and velocities of
     step n + 1 after STREAM, with their cells and cell sums.
@@ -66,6 +66,10 @@ def _stream_singles(worker, now, physics, fluid):
     impulse, tensor = fluid.taken.impulse[worker.thread], fluid.taken.tensor
     sums, measured = fluid.cells.sums[worker.thread], now.flags & MEASURE_STRESS
     first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+    # Strip by strip, each in the cache for all stages. The pending collision (v at t) comes first,
+    # then the flight (r, v: t -> t + dt) and the terms for the new cells. A thread writes its own
+    # particles and its own sums, so there is no race. Sums are integers: their bits do not depend
+    # on the shares.
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
@@ -95,7 +99,7 @@ def _stream_singles(worker, now, physics, fluid):
             tallied = tally(physics.energy, 0.0, zero)
             add_strip(cell, terms, sums, lanes, physics.terms, tallied)
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
-            note_strays(worker, now, physics, fluid, strip, s)
+            note_migrants(worker, now, physics, fluid, strip, s)
 
 
 @stage
@@ -105,9 +109,12 @@ def _stream_molecules(worker, now, physics, fluid):
     clear, work = scratch.clear[worker.thread], scratch.beads[worker.thread]
     tensor, sums = fluid.taken.tensor, fluid.cells.sums[worker.thread]
     beads, measured = physics.molecule.beads, now.flags & MEASURE_STRESS
-    # the box in which images were counted
+    # The box in which images were counted.
     before = at_time(now.box, (now.counter.step - 1) * physics.timestep)
     first, last = share(groups_in(particles.filling), worker.thread, worker.threads)
+    # A group is one strip for each bead of 256 molecules. Strips collide on their own. For the
+    # flight with its sub-steps, WIDTH molecules at a time are copied to rows that stay in the
+    # first-level cache. Then strips find their cells, as for single particles.
     for g in range(first, last):
         lanes = lanes_in(particles.filling, g * beads)
         for k in range(beads):  # velocities of step n, after the collision
@@ -127,7 +134,9 @@ def _stream_molecules(worker, now, physics, fluid):
         for start in range(0, lanes, WIDTH):  # positions and velocities of step n + 1
             batch = Batch(g, g * beads, start, min(WIDTH, lanes - start))
             leader = particles.image[:, g * beads * LANES + start : (g * beads + 1) * LANES]
-            for k in range(beads - 1, -1, -1):  # the leader's counts of boxes stay to the end
+            # Under shear each bead returns to the image of the first bead, by the image counts of
+            # both. The first bead comes last, because the others still need its counts.
+            for k in range(beads - 1, -1, -1):
                 s = g * beads + k
                 image = particles.image[:, s * LANES + start : (s + 1) * LANES]
                 strip = particles.data[strip_at(s, particles.rows)][start:]
@@ -148,14 +157,16 @@ def _stream_molecules(worker, now, physics, fluid):
             add_strip(cell, terms, sums, lanes, physics.terms, tallied)
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
             if k == 0:
-                note_strays(worker, now, physics, fluid, strip, s)
+                note_migrants(worker, now, physics, fluid, strip, s)
 
 
 @seldom
 def add_strip_flux(physics, box, grid, strip, count, tensor):
-    """What the particles of a strip carry of the stress."""
+    """Add the part of the particles of a strip in the stress."""
     zero = physics.zero
     d, sums = len(zero), integers(products(zero, zero) + products(zero, zero))
+    # Kinetic part: m c c with the velocity c relative to the shear flow. Collisional part: m v
+    # times the place in its cell, of which the caller takes the difference over a collision.
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         m = lane_mass(physics.masses, strip, i, 2 * d)

@@ -1,4 +1,4 @@
-"""Particles that are made or read piece by piece go to the ranks whose blocks they are in."""
+"""Particles that are made or read piece by piece are sent to the ranks of their blocks."""
 
 from __future__ import annotations
 
@@ -16,16 +16,18 @@ DONE, MORE, FAILED = range(3)
 Owners = Callable[[NDArray[np.float64]], NDArray[np.int64]]
 
 
-def dealt(
+def distributed(
     comm: Any, particles: Iterable[Piece], owners: Owners, beads: int, d: int
 ) -> Iterator[Piece]:
-    """What of the pieces of all ranks is this one's, round after round, in d dimensions.
+    """The particles of this rank out of the pieces of all ranks, in rounds, in d dimensions.
 
-    Pieces are of whole molecules, which are where their first bead is; `owners` tells the rank of
-    each place (n, d). All ranks do this together, with as many pieces each as they have. Raises on
-    every rank what is raised on one while it makes its pieces.
+    Pieces hold whole molecules, which belong to the block of their first bead; `owners` returns the
+    rank of each place (n, d). All ranks call this together; their numbers of pieces may differ. An
+    error of one rank while it makes its pieces is raised on every rank.
     """
     left = iter(particles)
+    # Collective rounds: each rank sends one piece, or an empty one when it has no more. The rounds
+    # end on all ranks together, so none waits in `Alltoall` for one that has finished.
     while True:
         piece, error = None, None
         try:
@@ -33,14 +35,14 @@ def dealt(
             to = np.repeat(owners(piece.positions[::beads]), beads) if piece else np.zeros(0, int)
         except Exception as reason:
             error = reason
-        if not _anybody(comm, piece is not None, error):
+        if not _any_left(comm, piece is not None, error):
             return
         rows = np.zeros((0, 1 + 3 * d), np.int64) if piece is None else _packed(piece)
         yield _unpacked(_sent(comm, rows, to), d)
 
 
-def _anybody(comm: Any, here: bool, error: Exception | None) -> bool:
-    """Whether any rank has a piece. Raises if one has failed."""
+def _any_left(comm: Any, here: bool, error: Exception | None) -> bool:
+    """True if any rank has a piece. Raises if a rank has failed."""
     worst = max(comm.allgather(FAILED if error else MORE if here else DONE))
     if worst == FAILED:
         said = comm.allgather(None if error is None else str(error))
@@ -52,7 +54,7 @@ def _anybody(comm: Any, here: bool, error: Exception | None) -> bool:
 
 
 def _sent(comm: Any, rows: NDArray[np.int64], to: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Each row to a rank; those that come, by the ranks that they are from."""
+    """Send each row to a rank; returns the rows received, in the order of the senders."""
     words = rows.shape[1]
     sent = np.bincount(to, minlength=comm.size).astype(np.int64)
     come = np.empty_like(sent)
@@ -64,7 +66,7 @@ def _sent(comm: Any, rows: NDArray[np.int64], to: NDArray[np.int64]) -> NDArray[
 
 
 def _packed(piece: Piece) -> NDArray[np.int64]:
-    """All numbers of each particle in a row, as whole numbers."""
+    """All numbers of each particle in a row, as their bits in int64."""
     reals = np.concatenate([piece.positions, piece.velocities], axis=1, dtype=float)
     columns = piece.ids[:, None], reals.view(np.int64), piece.images
     return np.concatenate(columns, axis=1, dtype=np.int64)

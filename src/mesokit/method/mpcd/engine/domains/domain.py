@@ -1,4 +1,4 @@
-"""The part of the cells that is one rank's: how far it sees, and the memory of its messages."""
+"""The cells of one rank: its block, its halo, its partners and the memory of its messages."""
 
 from __future__ import annotations
 
@@ -34,27 +34,27 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
     from mesokit.method.mpcd.solutes import Solutes
 
-HALO = 2  # cells around a block that are known
-STRAY = 0.4  # cells that a particle of thermal speed goes from one move to the next
+HALO = 2  # cells around a block
+STRAY = 0.4  # cells that a particle of thermal speed flies between two migrations
 SPARE = 1.03  # times as many molecules as there are now, for which there is room
-FAST = 9.0  # thermal speeds: nobody is faster
+FAST = 9.0  # thermal speeds: no particle is faster
 FEW = 512  # rows to a partner that are always there
 
 
 def space_of(numbers: Numbers) -> Space:
-    """The cells of a case, and how they go on."""
+    """The cells of a case, and their images."""
     wraps = tuple(not shut for shut in numbers.closed)
     return Space(tuple(numbers.cells), wraps, numbers.case.box.sheared)
 
 
 def axes_to_cut(numbers: Numbers) -> tuple[float, ...]:
-    """By which lengths are compared: where images slide, x and y are better not cut."""
+    """Weights of lengths, by which axes are cut: where images slide, x and y better stay whole."""
     d = numbers.dimension
     return (1.0,) * d if not numbers.case.box.sheared else (0.5, 0.25, 1.0)[:d]
 
 
 class Domain:
-    """The cells of one rank and how it shares others.
+    """The cells of one rank, and those that it shares with partners.
 
     Parameters
     ----------
@@ -63,11 +63,11 @@ class Domain:
     comm : mpi4py communicator
         Of all ranks.
     tree : Tree
-        Who has which cells.
+        The block of each rank.
     threads : int
         Of this rank.
     molecules : int
-        How many it is to hold, about.
+        Approximate number that the rank will hold.
     crowded : bool
         Whether ranks share cores.
     """
@@ -111,7 +111,7 @@ class Domain:
         return self.numbers.density * max(len(mine), len(theirs)) / HALO
 
     def _ghosts_of(self, other: int) -> int:
-        """Room for rows of ghosts between this rank and another, of either the same."""
+        """Room for rows of ghosts between two ranks, the same on both."""
         crowd, numbers = self._crowd(other), self.numbers
         number = FEW + 0.05 * crowd
         if numbers.beads > 1:
@@ -127,24 +127,24 @@ class Domain:
     # --- cells ----------------------------------------------------------------------------------
 
     def grid(self, whole: Any) -> Part:
-        """The cells of the box as this rank knows them."""
+        """The cells of the box as this rank numbers them."""
         first, known = (tuple(float(n) for n in numbers) for numbers in self.region)
         return Part(whole.shift, whole.origin, whole.cells, whole.inverse, first, known)
 
     @property
     def held(self) -> Held:
-        """Cells without a shift that this rank's particles may come to."""
+        """Cells without a shift that particles of this rank can reach."""
         region = region_of(self.block, self.space, 1 + math.ceil(farthest(self.numbers)))
         size = [math.ceil(length) for length in self.numbers.case.box.size]
         known = zip(*region, size, self.space.wraps, strict=True)
         return Held(region.first, tuple(n if on else min(n, all_ - a) for a, n, all_, on in known))
 
     def known(self, cells: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Numbers here of known cells, by their numbers in the box."""
+        """Numbers here of held cells, by their numbers in the box."""
         return self._known(cells)
 
     def owners(self, positions: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The rank (n,) of each place (n, d) by the cells without a shift."""
+        """The owner (n,) of each place (n, d), by the cells without a shift."""
         return owners(self.tree.blocks, self.numbers, positions)
 
     # --- memory ---------------------------------------------------------------------------------
@@ -160,16 +160,16 @@ class Domain:
             mine.append(here)
             theirs.append(there)
             given.append(shared(self.regions[p], self.region, self.space, self.block)[1])
-        twice = 2 if numbers.virtual == "extrapolate" else 1  # what is seen of the flow, too
+        twice = 2 if numbers.virtual == "extrapolate" else 1  # also the flow at surfaces
         more = [1 + ghosts + self.beads for ghosts in self.ghosts]
         out_at = _starts(twice * len(m) + n for m, n in zip(mine, more, strict=True))
         in_at = _starts(twice * len(m) + n for m, n in zip(given, more, strict=True))
         moved_at = _starts(1 + n for n in self.movers)
-        answer = max(record_length(numbers.coefficient_count), 3 + d)
+        length = max(record_length(numbers.coefficient_count), 3 + d)
         record = numbers.beads * (1 + memory.rows + d + numbers.coefficient_count)
         blocks = [self.tree.blocks[p] for p in self.partners]
         regions = [self.regions[p] for p in self.partners]
-        asked = numbers.case.fluid.collision.gradient_of is not None
+        gradient = numbers.case.fluid.collision.gradient_of is not None
         return Shared(
             post=post(self.comm, 4 * q, self.crowded),
             keys=np.pad(keys(self.region, self.space), (0, LANES)),
@@ -189,13 +189,13 @@ class Domain:
             in_at=in_at,
             sums_out=zeros((out_at[-1], 1 + width), np.int64),
             sums_in=zeros((in_at[-1], 1 + width), np.int64),
-            answers_out=zeros((in_at[-1], answer)),
-            answers_in=zeros((out_at[-1], answer)),
-            asked=zeros(int(out_at[-1]), np.int64),
+            coefficients_out=zeros((in_at[-1], length)),
+            coefficients_in=zeros((out_at[-1], length)),
+            records=zeros(int(out_at[-1]), np.int64),
             counting=zeros((threads, max(q, 1)), np.int64),
             sent=zeros(max(q, 1), np.int64),
-            field_out=zeros(sum(map(len, given)) if asked else 0),
-            field_in=zeros(sum(map(len, mine)) if asked else 0),
+            field_out=zeros(sum(map(len, given)) if gradient else 0),
+            field_in=zeros(sum(map(len, mine)) if gradient else 0),
             ghost_place=zeros((threads, self.ghosts_of_thread), np.int64),
             ghost_cell=zeros((threads, self.ghosts_of_thread), np.int64),
             ghost_owner=zeros((threads, self.ghosts_of_thread), np.int64),
@@ -225,11 +225,11 @@ class Domain:
         return tuple(tuple(float(n) for n in side) for side in self.block)
 
     def halo(self, given: Solutes, terms: int) -> Any:
-        """Which beads of solutes are whose."""
+        """Memory for the halo of beads of solutes."""
         return halo_of(self, given, terms)
 
     def seen(self, probes: NDArray[np.float64]) -> FlowAtSurface:
-        """Which pieces of surface this rank keeps, and which the others do."""
+        """The pieces of surface near this rank's block, and near those of its partners."""
         given = [self._pieces(probes, p) for p in self.partners]
         return FlowAtSurface(
             limits=self._limits,
@@ -256,7 +256,7 @@ class Domain:
 def owners(
     blocks: Sequence[Block], numbers: Numbers, positions: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """The rank (n,) of each place (n, d) by the cells without a shift."""
+    """The owner (n,) of each place (n, d), by the cells without a shift."""
     found = np.full(len(positions), -1, np.int64)
     cells, whole = np.floor(positions).astype(np.int64), np.array(numbers.cells)
     cells %= np.where(numbers.closed, whole - 1, whole)
@@ -269,7 +269,7 @@ NEAR = 4.0  # cells from a block: a piece of surface so far away may matter in i
 
 
 class _Lookup:
-    """From numbers in the box to numbers here."""
+    """Numbers of held cells by their numbers in the box."""
 
     def __init__(self, region: Region, space: Space) -> None:
         self.region, self.space = region, space
@@ -285,23 +285,23 @@ class _Lookup:
 
 
 def every_of(numbers: Numbers) -> int:
-    """Steps from one move of particles to the next."""
+    """Steps from one migration to the next."""
     return int(min(max(STRAY / flight(numbers), 1), 10))
 
 
 def flight(numbers: Numbers) -> float:
-    """How far a particle of thermal speed, the lightest of the case, goes in a timestep."""
+    """Length of the flight in a timestep at thermal speed, of the lightest species."""
     fluid = numbers.case.fluid
     return math.sqrt(fluid.kT / min(kind.mass for kind in fluid.kinds)) * fluid.timestep
 
 
 def farthest(numbers: Numbers) -> float:
-    """Cells beyond its block where a rank may have particles."""
+    """Distance from its block, in cells, at which a rank may have particles."""
     return FAST * flight(numbers) * math.sqrt(every_of(numbers)) + 4.0 * extent(numbers)
 
 
 def extent(numbers: Numbers) -> float:
-    """About how far the beads of a molecule of the fluid are from its first."""
+    """Approximate distance of the last bead of a molecule of the fluid from its first."""
     molecule, kT = numbers.case.fluid.molecule, numbers.case.fluid.kT
     if molecule is None:
         return 0.0

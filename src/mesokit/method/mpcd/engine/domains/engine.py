@@ -18,7 +18,7 @@ from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
 from mesokit.method.mpcd.engine.domains.blocks.balance import Balance, Load, still_good
 from mesokit.method.mpcd.engine.domains.blocks.tree import Tree, divided
 from mesokit.method.mpcd.engine.domains.blocks.window import Window, waiting
-from mesokit.method.mpcd.engine.domains.deal import dealt
+from mesokit.method.mpcd.engine.domains.deal import distributed
 from mesokit.method.mpcd.engine.domains.domain import Domain, axes_to_cut, owners
 from mesokit.method.mpcd.engine.domains.here import Here
 from mesokit.method.mpcd.engine.domains.messages.mpi import crowded
@@ -52,7 +52,7 @@ GROWTH = 1.1  # times as many molecules as there are, when arrays become too sma
 
 
 class Ranks(CPU):
-    """The part of a fluid that is one rank's, and the verbs that all ranks do together.
+    """The part of a fluid in the block of one rank; all ranks call its methods together.
 
     Parameters
     ----------
@@ -76,10 +76,10 @@ class Ranks(CPU):
         self._crowded = crowded(comm, threads)
         self._window = Window()
         tree = divided(self.numbers.cells, comm.size, axes_to_cut(self.numbers))
-        self._live_in(tree, self.numbers.filling.molecules // comm.size)
+        self._allocate(tree, self.numbers.filling.molecules // comm.size)
 
-    def _live_in(self, tree: Tree, molecules: int) -> None:
-        """New memory, for this rank's block in a tree."""
+    def _allocate(self, tree: Tree, molecules: int) -> None:
+        """Allocate memory for this rank's block in a tree."""
         size = self.threads.size
         earlier = self.memory if hasattr(self, "memory") else None
         self.domain = Domain(self.numbers, self.comm, tree, size, molecules, self._crowded)
@@ -99,10 +99,10 @@ class Ranks(CPU):
         return pieces(first * beads, last * beads, beads)
 
     def _take(self, particles: Iterable[Piece]) -> None:
-        """Have those of these particles, and of those of other ranks, that are in this block."""
+        """Store the particles of this block, out of these and those of other ranks."""
         beads, held = self.numbers.beads, 0
         self._count(0)
-        come = dealt(self.comm, particles, self.domain.owners, beads, self.dimension)
+        come = distributed(self.comm, particles, self.domain.owners, beads, self.dimension)
         for piece in come:
             first, held = held, held + len(piece.ids) // beads
             if held > self.domain.room:
@@ -113,15 +113,15 @@ class Ranks(CPU):
     def _hold(
         self, ids: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
     ) -> None:
-        """Have these particles, and no others."""
+        """Store these particles, and no others."""
         molecules = len(ids) // self.numbers.beads
         if molecules > self.domain.room:
-            self._live_in(self.domain.tree, molecules)
+            self._allocate(self.domain.tree, molecules)
         self._count(molecules)
         self.memory.put(ids, positions, velocities, images)
 
     def _count(self, molecules: int) -> None:
-        """Have so many molecules in memory."""
+        """Set the number of molecules in memory."""
         fluid = self.memory.fluid
         filling: Any = fluid.particles.filling
         filling = filling._replace(molecules=molecules)
@@ -129,16 +129,16 @@ class Ranks(CPU):
         fluid.cells.shared.noted[MOLECULES] = molecules
 
     def _make_room(self, least: int = 0) -> None:
-        """Larger arrays for what this rank has, and for as many molecules at least."""
+        """Allocate larger arrays, for the particles of this rank and at least so many molecules."""
         memory, rows = self.memory, self.memory.rows_of()
         ids = memory.fluid.particles.ident[memory.places]
         molecules = int(GROWTH * len(ids) / self.numbers.beads) + 1
-        self._live_in(self.domain.tree, max(molecules, least))
+        self._allocate(self.domain.tree, max(molecules, least))
         self._go_on_from(memory)
         self._hold(ids, *rows)
 
     def _go_on_from(self, memory: Memory) -> None:
-        """Take over what is not of particles."""
+        """Copy all that belongs to no particle of the fluid from earlier memory."""
         new = self.memory
         new.step = memory.step
         new.fluid.taken.impulse[:] = memory.fluid.taken.impulse
@@ -151,6 +151,8 @@ class Ranks(CPU):
 
     def _steps(self, steps: int, what: int) -> None:
         left = steps
+        # The kernel ends before `steps` if the next migration might not fit into its arrays.
+        # Partners then wait for this rank's next message, so no rank repeats a step.
         while True:
             before = self.memory.step
             with self._window.timing(self):
@@ -174,22 +176,22 @@ class Ranks(CPU):
             self._balance()
 
     def _balance(self) -> None:
-        """Move borders if the window before the last said so."""
-        windows = self.balancing.heard()
+        """Move borders if the last two windows were unbalanced."""
+        windows = self.balancing.received_times()
         if windows:
             kept = still_good(self.domain.tree, windows, self.balancing.limit)
             if kept.nodes != self.domain.tree.nodes:
-                self.cut_anew(kept)
-        self.balancing.tell(self._window.work)
+                self.rebalance(kept)
+        self.balancing.send_time(self._window.work)
         self._window = Window()
 
-    def cut_anew(self, kept: Tree | None = None) -> None:
-        """Cut by what each cell has cost of late; nodes in `kept` stay."""
+    def rebalance(self, kept: Tree | None = None) -> None:
+        """Cut the cells anew by the work of each in the last window; nodes in `kept` stay."""
         load = Load(self.domain.block, self._costs(), self.comm)
         cells, weights = self.numbers.cells, axes_to_cut(self.numbers)
         tree = divided(cells, self.comm.size, weights, load.layers, kept)
         if tree.blocks != self.domain.tree.blocks:
-            self.live_in(tree)
+            self.move_borders(tree)
         self.balancing.moved(self.step, tree.blocks)
 
     def _costs(self) -> Floats:
@@ -211,13 +213,13 @@ class Ranks(CPU):
             costs += window.beads * beads / max(beads.sum(), 1.0)
         return costs
 
-    def live_in(self, tree: Tree) -> None:
-        """Have the blocks of another tree, and the particles that are there."""
+    def move_borders(self, tree: Tree) -> None:
+        """Take the block of another tree, and exchange the particles between ranks."""
         memory, rates = self.memory, self.readings.wall_rates()
         solutes = None if self.solutes is None else self.solutes.state()
         leaders = memory.rows_of()[0][:: self.numbers.beads]
         here = np.bincount(owners(tree.blocks, self.numbers, leaders), minlength=self.comm.size)
-        self._live_in(tree, int(self.readings.reduced(here)[self.comm.rank]))
+        self._allocate(tree, int(self.readings.reduced(here)[self.comm.rank]))
         self._go_on_from(memory)
         self.memory.wall_rates[:] = rates
         self._take(pieces_of(memory))
@@ -225,7 +227,7 @@ class Ranks(CPU):
             self.solutes.restore(solutes)
 
     def balance(self) -> dict[str, Any]:
-        """How often borders moved, and most over mean of the ranks' work at first and of late."""
+        """Number of moves of borders, and most over mean of the ranks' work at first and lately."""
         known = self.balancing
         found: dict[str, Any] = {"borders moved": len(known.moves)}
         if not np.isnan(known.first):
@@ -254,7 +256,7 @@ class Ranks(CPU):
 
     @property
     def here(self) -> Here:
-        """What this rank may ask of its own particles without the others."""
+        """Readings of this rank's own particles, without messages."""
         return Here(self.readings)
 
     @property
@@ -273,8 +275,8 @@ class Ranks(CPU):
     # --- its state ------------------------------------------------------------------------------
 
     def state(self) -> dict[str, Any]:
-        """As of `CPU`; positions, velocities and images come piece by piece (`Spread`), as long as
-        nobody moves on."""
+        """As of `CPU`; positions, velocities and images come piece by piece (`Spread`), until the
+        next step."""
         self.check()
         comm, shape, rows = self.comm, (self.n, self.dimension), self.readings.rows_in_memory
         return {
@@ -288,7 +290,7 @@ class Ranks(CPU):
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Go on from a state, which only the first rank has to have."""
+        """Continue from a state, which only the first rank needs."""
         root = self.comm.rank == ROOT
         plain = {k: np.asarray(v) for k, v in state.items() if k not in SPREAD} if root else None
         plain = self.comm.bcast(plain, ROOT)

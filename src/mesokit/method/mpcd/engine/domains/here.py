@@ -1,4 +1,4 @@
-"""The particles of one rank alone, for what is kept where they are until it is written."""
+"""The particles of one rank alone, for data that stay on their rank until they are written."""
 
 from __future__ import annotations
 
@@ -14,31 +14,31 @@ from mesokit.method.mpcd.engine.pieces import pieces
 
 
 class Here:
-    """What may be asked of the particles that are here now, by their numbers; nobody else answers.
+    """Readings of the particles of this rank, by id, without messages to other ranks.
 
-    Beads of solutes, which all ranks know, count as those of the first rank.
+    Beads of solutes, which all ranks can read, count as those of the first rank.
     """
 
     def __init__(self, readings: SharedReadings) -> None:
         self.readings = readings
 
     def ids(self, first: int, last: int) -> NDArray[np.int64]:
-        """Who is here of the particles from one number to before another, rising."""
+        """Ids of the particles of this rank from `first` to before `last`, rising."""
         readings, n = self.readings, self.readings.n
         own = readings.numbers_here(min(first, n), min(last, n))
         beads = np.arange(max(first, n), max(last, n) if readings.comm.rank == ROOT else 0)
         return np.concatenate([own, beads])
 
     def positions(self, ids: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Positions (n, d) of some of them, in the box."""
+        """Positions (n, d) of some of these particles, in the box."""
         return self._of("positions", ids)
 
     def velocities(self, ids: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Velocities (n, d) of some of them."""
+        """Velocities (n, d) of some of these particles."""
         return self._of("velocities", ids)
 
     def images(self, ids: NDArray[np.int64]) -> NDArray[np.int32]:
-        """How many times each of some left the box along each axis (n, d)."""
+        """Image counts (n, d) of some of these particles."""
         return self._of("images", ids)
 
     def _of(self, name: str, ids: NDArray[np.int64]) -> NDArray[Any]:
@@ -55,7 +55,7 @@ class Here:
         return out
 
     def spread(self, number: int, places: NDArray[np.int64], rows: NDArray[Any]) -> Spread:
-        """An array of so many rows, of which these are here, at these places (rising)."""
+        """An array of `number` rows, of which this rank has `rows` at these places (rising)."""
 
         def some(first: int, last: int) -> tuple[NDArray[np.int64], NDArray[Any]]:
             part = slice(*np.searchsorted(places, (first, last)))

@@ -1,4 +1,4 @@
-"""What observables ask, where each rank has a part of the particles: all ranks answer together."""
+"""Readings for observables where each rank has a part of the particles."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from mesokit.method.mpcd.engine.measure.readings import Observed, Readings
 
 
 class SharedReadings(Readings):
-    """Readings of all ranks, the same on each: every one must ask, and in the same order."""
+    """Readings of all ranks, the same on each: all ranks must call them, in the same order."""
 
     def __init__(self, memory: Memory, threads: Threads, comm: Any) -> None:
         super().__init__(memory, threads)
         self.comm = comm
-        self.tells_solutes = comm.rank == ROOT  # all ranks know all beads: those of one count
+        self.counts_solutes = comm.rank == ROOT  # beads are read on all ranks and counted on one
         if memory.solutes:
             self.solutes = SharedSolutes(memory, comm)
         self._sorted: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
@@ -33,7 +33,7 @@ class SharedReadings(Readings):
             self.solutes.known = False
 
     def go_on_from(self, earlier: SharedReadings | None) -> None:
-        """Take over what is counted from readings of memory that was given up."""
+        """Continue the counts of earlier readings, whose memory is replaced."""
         if earlier is not None:
             self.wall_steps, self._walls = earlier.wall_steps, earlier._walls
             if isinstance(self.solutes, SharedSolutes):
@@ -45,14 +45,14 @@ class SharedReadings(Readings):
         return out
 
     def own_rows(self, ids: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Which of the particles asked for are here: their places in `ids`, and among all here."""
+        """Particles of this rank among `ids`: their places in `ids`, and among all of this rank."""
         own_ids, order = self._by_number()
         at = np.minimum(np.searchsorted(own_ids, ids), max(len(own_ids) - 1, 0))
         here = np.flatnonzero(own_ids[at] == ids) if len(own_ids) else np.zeros(0, np.int64)
         return here, order[at[here]]
 
     def _by_number(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The numbers of all that are here, rising, and their places among all here."""
+        """Ids of all particles of this rank, rising, and their places among them."""
         if self._sorted is None:
             own_ids = self.memory.fluid.particles.ident[self.memory.places]
             order = np.argsort(own_ids)
@@ -60,7 +60,7 @@ class SharedReadings(Readings):
         return self._sorted
 
     def together(self, here: NDArray[np.int64], rows: Floats, number: int) -> Floats:
-        """Rows (number, columns) of which each rank has those with these numbers."""
+        """Gather rows (number, columns) on all ranks; this one has those with numbers `here`."""
         words = 1 + rows.shape[1]
         sent = np.concatenate([here[:, None], np.ascontiguousarray(rows).view(np.int64)], axis=1)
         counts = np.array(self.comm.allgather(len(here)))
@@ -71,13 +71,13 @@ class SharedReadings(Readings):
         return out
 
     def numbers_here(self, first: int, last: int) -> NDArray[np.int64]:
-        """Who is here of the particles from one number to before another, rising."""
+        """Ids of the particles of this rank from `first` to before `last`, rising."""
         own_ids, _ = self._by_number()
         return own_ids[slice(*np.searchsorted(own_ids, (first, last)))].copy()
 
     def rows_in_memory(self, name: str, first: int, last: int) -> tuple[NDArray, NDArray]:
-        """Of the particles from one number to before another, who is here, and their positions,
-        velocities or images as they lie in memory."""
+        """Ids of this rank from `first` to before `last`, and positions, velocities or images in
+        the order of memory."""
         own_ids, order = self._by_number()
         part = slice(*np.searchsorted(own_ids, (first, last)))
         return own_ids[part], self.memory.columns(name, self.memory.places[order[part]])
@@ -87,7 +87,7 @@ class SharedReadings(Readings):
         return Observed(rows[:, :d], rows[:, d : 2 * d], rows[:, 2 * d :].astype(np.int32))
 
     def wall_rates(self) -> Floats:
-        """How the flow rises from all pieces of surface, each as the rank nearby has it."""
+        """Rates of the flow at all pieces of surface, each from the owner of its probe."""
         virtual = self.memory.walls.virtual
         if not virtual or not len(virtual.rates):
             return self.memory.wall_rates.copy()
@@ -108,7 +108,7 @@ class SharedReadings(Readings):
 
 
 class SharedSolutes(SoluteReadings):
-    """The beads of all ranks; places and velocities are fetched when somebody asks."""
+    """The beads of all ranks; places and velocities are gathered when they are read."""
 
     def __init__(self, memory: Memory, comm: Any) -> None:
         super().__init__(memory)
@@ -125,13 +125,13 @@ class SharedSolutes(SoluteReadings):
         return self.state_of.v.reshape(self.shape)
 
     def own_places(self) -> Floats:
-        """Places of this rank's own beads, in the box."""
+        """Places of own beads, in the box."""
         beads = self.state_of
         own = beads.halo.numbers[OWN, : beads.halo.count[OWN]]
         return self.folded_of(beads.r.reshape(self.shape), beads.v.reshape(self.shape))[0][own]
 
     def fetch(self) -> None:
-        """Get those of all ranks, unless nothing has moved since."""
+        """Gather places and velocities of all ranks, unless they are up to date."""
         if self.known:
             return
         beads, d = self.state_of, self.shape[1]
@@ -147,7 +147,7 @@ class SharedSolutes(SoluteReadings):
 
     def potential_energy(self) -> float:
         self.fetch()
-        self.forget_lists()  # those of this rank know of beads around its block alone
+        self.forget_lists()  # those of this rank have only beads around its block
         energy = energy_in(self.memory, self.state_of._replace(halo=()), self.places)
         self.forget_lists()
         return energy
@@ -159,15 +159,15 @@ class SharedSolutes(SoluteReadings):
     def begin(self, places: Floats, velocities: Floats) -> None:
         self.known = True
         super().begin(places, velocities)
-        self.share_out()
+        self.assign_owners()
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
         self.known = True
         super().restore(state)
-        self.share_out()
+        self.assign_owners()
 
-    def share_out(self) -> None:
-        """Each rank takes the beads in its block."""
+    def assign_owners(self) -> None:
+        """Make each rank the owner of the beads in its block."""
         owner = self.memory.domain.owners(self.folded()[0])
         own, halo = np.flatnonzero(owner == self.comm.rank), self.state_of.halo
         halo.numbers[OWN, : len(own)], halo.count[OWN] = own, len(own)

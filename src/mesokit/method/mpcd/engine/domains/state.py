@@ -1,4 +1,4 @@
-"""The state of all ranks, of which none holds the whole: arrays that come piece by piece."""
+"""The state of all ranks as arrays that come piece by piece: no rank holds the whole."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.method.mpcd.engine.pieces import pieces
 
-ROOT = 0  # the rank that files are read and written by
+ROOT = 0  # the rank that reads and writes files
 SPREAD = "positions", "velocities", "images"  # what a state has of each particle
 Rows = Callable[[int, int], tuple[NDArray[np.int64], NDArray[Any]]]
 
@@ -18,15 +18,15 @@ Rows = Callable[[int, int], tuple[NDArray[np.int64], NDArray[Any]]]
 class Spread:
     """An array (n, ...) of which each rank has some rows.
 
-    `rows` gives, of those from one number to before another, the numbers of the rows that are here
-    and these rows. What is made of it is made by all ranks together.
+    `rows` returns the numbers of this rank's rows from one number to before another, and these
+    rows. All ranks must read the array together.
     """
 
     def __init__(self, comm: Any, shape: tuple[int, ...], dtype: Any, rows: Rows) -> None:
         self.comm, self.shape, self.dtype, self.rows = comm, shape, np.dtype(dtype), rows
 
     def blocks(self) -> Iterator[NDArray[Any]]:
-        """All rows in order, so many at a time, for the first rank; the others get empty blocks."""
+        """All rows in order, in blocks, on the first rank; the other ranks receive empty blocks."""
         for first, last in pieces(0, self.shape[0]):
             yield self._block(first, last)
 

@@ -27,8 +27,8 @@ from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid, momentum_scale
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_values, store_values
 from mesokit.method.mpcd.engine.embedded.near import has_left, note
 from mesokit.method.mpcd.engine.embedded.state import (
+    ALL_BEADS,
     COUNT,
-    EVERYBODY,
     PARTNERS,
     TOO_FAR,
     TOO_HARD,
@@ -91,7 +91,7 @@ def drift_particle(moving, n, counter, physics, time):
     store_values(embedded.v[thread], at, v)
     start = load_values(embedded.start[thread], at, zero)
     if has_left(start, r, embedded.bound[thread, n]):  # pushed away: other beads may be near now
-        embedded.partners[thread, n] = EVERYBODY
+        embedded.partners[thread, n] = ALL_BEADS
 
 
 @by_type
@@ -123,6 +123,9 @@ def _(moving, step, box, physics, time):
     solutes, embedded, zero = moving.solutes, moving.embedded, physics.zero
     worker, beads = solutes.worker, solutes.beads
     embedded.taken[worker.thread] = 0
+    # First the particles of this thread: each gets its impulse, and the opposite goes to the
+    # thread's own sums of the beads. After the barrier each bead adds up the sums of all threads.
+    # Impulses are whole units of momentum, so totals have no order and momentum is exact.
     for n in range(embedded.number[worker.thread, COUNT]):
         kick_particle(moving, n, step, box, physics, time)
     barrier(worker)
@@ -146,8 +149,10 @@ def kick_particle(moving, n, step, box, physics, time):
     beads, at, d = moving.solutes.beads, np.uint64(n * len(zero)), len(zero)
     r, v = load_values(embedded.r[thread], at, zero), load_values(embedded.v[thread], at, zero)
     count, given, scale = embedded.partners[thread, n], integers(zero), momentum_scale(physics)
-    for k in range(count if count != EVERYBODY else len(beads.cell)):
-        j = embedded.beads[thread, n * PARTNERS + k] if count != EVERYBODY else k
+    # Beads on the particle's list, or all beads where a list does not hold. Beads beyond the reach
+    # of the potential add nothing, so both give the same bits.
+    for k in range(count if count != ALL_BEADS else len(beads.cell)):
+        j = embedded.beads[thread, n * PARTNERS + k] if count != ALL_BEADS else k
         separation = apart(box, load_place(beads, j, r), r)
         square = dot(separation, separation)
         _, force_over_r = central(embedded.potential, square)

@@ -1,9 +1,9 @@
-"""Which particles of the fluid may come near a bead in a timestep, and which beads.
+"""The particles of the fluid that may come near a bead in a timestep, and these beads.
 
 A particle that no bead can reach flies straight: its distance from all beads is larger than the
 reach of the potential, what it flies, and what beads may go (`skin`). The others are moved in the
-sub-steps of the beads. That follows from places and velocities alone, neither from the order in
-memory nor from threads: marked cells only say where it is worth looking.
+sub-steps of the beads. The choice depends on places and velocities alone, neither on the order in
+memory nor on threads: marked cells only save work.
 """
 
 import math
@@ -20,8 +20,8 @@ from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, store_values
 from mesokit.method.mpcd.engine.embedded.state import (
+    ALL_BEADS,
     COUNT,
-    EVERYBODY,
     PARTNERS,
     STEP,
     TOO_MANY,
@@ -57,6 +57,9 @@ def mark_around(embedded, r, stamp):
         high = with_item(high, k, floor(r[k] + reach))
     depth = int(high[2] - low[2]) + 1 if d == 3 else 1
     middle = r
+    # All cells of side a in a cube around the bead, but only those nearer than `reach`. Threads may
+    # mark the same cell, but all write the same stamp, the number of the step. So marks need no
+    # clearing.
     for c in range(depth):
         if d == 3:
             middle = with_item(middle, 2, low[2] + c + 0.5)
@@ -84,19 +87,24 @@ def path_of(embedded, physics, r, v):
 def choose_near(worker, now, physics, beads, strip, s, count, marks):
     """Put the particles of strip s that may come near a bead on the list of this thread.
 
-    Their lanes come to stand in the first places of `marks`; the answer is their number.
+    Their lanes become the first entries of `marks`; returns their number.
     """
     (embedded,), zero = beads.embedded, physics.zero
     d, step, candidates, chosen = len(zero), now.counter.step, 0, 0
+    # Coarse test of all lanes at t, before the flight: in a marked cell, or so fast that cells are
+    # no bound. It has no branches.
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         near = embedded.marked[cell_index(r, embedded.grid)] == step
         fast = not path_of(embedded, physics, r, v) <= embedded.travel
         marks[i] = np.int64(near) | np.int64(fast)
-    for i in range(count):  # their numbers first, without branches
+    # Compact the lanes of candidates to the front, again without branches.
+    for i in range(count):
         mark = marks[i]
         marks[candidates] = i
         candidates += mark
+    # Exact test of the few candidates, by distances from beads. The choice depends on places and
+    # velocities alone, so neither the order in memory nor threads change the result.
     for j in range(candidates):
         i = marks[j]
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
@@ -129,7 +137,7 @@ def find_partners(embedded, beads, box, r, path, where):
     if not path <= embedded.travel:  # a fast one, or one that is lost
         for j in range(number):
             if comes_near(embedded, beads, box, r, path, j):
-                return EVERYBODY
+                return ALL_BEADS
         return 0
     still, d, found, met = scaled(0.0, r), len(r), 0, False
     place, _, _ = fold(box, r, still, still)
@@ -137,6 +145,9 @@ def find_partners(embedded, beads, box, r, path, where):
     along_z, _ = next_along(lists, box, d - 1, place[d - 1])
     along_y, _ = next_along(lists, box, 1, place[1])
     along_x, _ = next_along(lists, box, 0, place[0])
+    # Beads in the 9 or 27 cells around the particle; these cells are at least as long as the reach.
+    # The list holds beads within reach of a flight of length `travel`. It is kept only if one of
+    # them is within reach of the particle's own flight. Forces are integers, so its order is free.
     for b in range(3):
         for c in range(3 if d == 3 else 1):
             layer = along_z[c] if d == 3 else 0
@@ -153,7 +164,7 @@ def find_partners(embedded, beads, box, r, path, where):
                         j = lists.following[j]
     if not met:
         return 0
-    return found if found <= PARTNERS else EVERYBODY
+    return found if found <= PARTNERS else ALL_BEADS
 
 
 @scalar
@@ -173,6 +184,6 @@ def note(faults, step, what, which):
 
 @scalar
 def has_left(start, r, bound):
-    """Whether a place is farther from where it was than it was said to be."""
+    """Whether a place is farther from an earlier one than a bound."""
     displacement = added_scaled(r, -1.0, start)
     return not dot(displacement, displacement) <= bound * bound

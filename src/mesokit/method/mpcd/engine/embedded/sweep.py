@@ -45,7 +45,7 @@ from mesokit.scalar.vector import added_scaled
 
 @stage
 def stream_around(worker, now, physics, fluid, beads):
-    """Do what the flags ask (see `cpu.sweep.stream`) for all that cannot come near a bead.
+    """Do the stages that the flags have (see `cpu.sweep`) for particles that no bead can reach.
 
     Of the others velocities are those after the collision; they are on the list of this thread.
     """
@@ -59,6 +59,9 @@ def stream_around(worker, now, physics, fluid, beads):
         find_beads(worker, now.counter.step, now.box, beads, zero)
         embedded.number[worker.thread, COUNT] = 0
     first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+    # As `cpu.sweep`, but particles near a bead are copied to a list with r and v at t, after the
+    # collision. Their lanes fly with the others, for whole vectors, and do not count: their terms
+    # go to the spare cell. `put_back` restores them at t + dt.
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
@@ -105,7 +108,7 @@ def forget_leap(physics, room, lane, displacement):
 
 @scalar
 def put_one_back(worker, now, physics, fluid, embedded, n):
-    """What `bin_strip` and `add_strip` do, for one particle."""
+    """Do the work of `bin_strip` and `add_strip` for one particle."""
     particles, zero, lane = fluid.particles, physics.zero, embedded.lane[worker.thread, n]
     s, i, d, at = lane // LANES, lane % LANES, len(zero), np.uint64(n * len(zero))
     r = load_values(embedded.r[worker.thread], at, zero)

@@ -1,4 +1,4 @@
-"""What is added up over particles that are looked at piece by piece, never all at once.
+"""Sums over particles that are read piece by piece, never all at once.
 
 Each rank has pieces of its own, and so has each order of particles in memory. What is found of a
 particle must be the same in any piece, by operations on its own row alone (no matrix products, no
@@ -41,7 +41,7 @@ class Some(NamedTuple):
 
 
 class ByPieces:
-    """What readings find piece by piece; of ranks, all must ask."""
+    """Readings that are found piece by piece; all ranks must call them."""
 
     def __init__(self, readings: Readings) -> None:
         self.readings, self.memory = readings, readings.memory
@@ -91,7 +91,7 @@ class ByPieces:
             yield Some(ids, *readings.seen_at(places, False), readings.masses(ids))
         if last > self.n and readings.solutes is not None:
             beads = readings.solutes.folded()
-            ids = np.arange(max(first, self.n), last if readings.tells_solutes else 0)
+            ids = np.arange(max(first, self.n), last if readings.counts_solutes else 0)
             r, v, images = (row[ids - self.n] for row in beads)
             yield Some(ids, r, v, images, readings.masses(ids))
 
@@ -113,7 +113,7 @@ class ByPieces:
             yield (numbers[:, None] + np.arange(len(links))).ravel(), separations
         if kind.stop > own and solutes is not None:
             separations = solutes.bond_vectors()[kind.start - own : kind.stop - own]
-            number = len(separations) if self.readings.tells_solutes else 0
+            number = len(separations) if self.readings.counts_solutes else 0
             yield np.arange(number), separations[:number]
 
     def _seen(self, molecules: Integers) -> Observed:

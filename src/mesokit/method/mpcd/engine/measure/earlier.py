@@ -1,4 +1,4 @@
-"""What a checkpoint says of its particles, row by row: as the fluid that wrote it would tell."""
+"""The particles of a checkpoint, row by row, as readings of the fluid that wrote it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What observables ask of a fluid in memory."""
+"""Readings of a fluid in memory, for observables."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Observed(NamedTuple):
 
 
 class Readings:
-    """What can be read of a fluid in memory, by threads that look together."""
+    """Readings of a fluid in memory, by all threads together."""
 
     def __init__(self, memory: Memory, threads: Threads) -> None:
         self.memory, self.numbers, self.threads = memory, memory.numbers, threads
@@ -52,7 +52,7 @@ class Readings:
         self._slots_of_asked = np.zeros(0, np.int32)
         self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
         self.stress: dict[str, Floats] = {}
-        self.tells_solutes = True  # whether sums take the beads of solutes from here
+        self.counts_solutes = True  # whether sums take the beads of solutes from here
         self.solutes = SoluteReadings(memory) if memory.solutes else None
 
     @property
@@ -330,7 +330,7 @@ class Readings:
         self.wall_steps = int(state["wall_steps"])
 
     def state_of_walls(self) -> dict[str, NDArray]:
-        """What surfaces took, for the state of an engine."""
+        """The momentum that surfaces took, for the state of an engine."""
         taken = self.wall_tally.state().items()
         steps = {"wall_steps": np.array(self.wall_steps)}
         return {f"walls/{name}": array.copy() for name, array in taken} | steps

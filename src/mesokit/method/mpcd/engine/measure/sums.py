@@ -1,4 +1,4 @@
-"""Sums over all particles that observables ask for; the same bits for any number of threads.
+"""Sums over all particles for observables; the same bits for any number of threads.
 
 The sums are of whole numbers: their order does not matter.
 """
@@ -41,9 +41,11 @@ def totals(worker, masses, particles, scales, out, fastest):
     data, rows = particles.data, particles.rows
     filling, d, zero = particles.filling, len(scales) - 1, scales[1:]
     first, last = share(strips_in(filling), worker.thread, worker.threads)
+    # Integer sums for each strip, so the share of a thread changes nothing. The largest velocity is
+    # compared by its bits: for positive floats these have the same order, with NaN at the top.
     for b in range(first, last):
         strip, momentum, energy = data[strip_at(b, rows)], integers(zero), np.int64(0)
-        top = np.int64(0)  # bits of numbers without a sign have their order, with nan above all
+        top = np.int64(0)
         for i in range(lanes_in(filling, b)):
             v = load_particle(strip, i, d, zero)
             m = lane_mass(masses, strip, i, 2 * d)
@@ -79,6 +81,8 @@ def bin_sums(worker, zero, masses, box, particles, bins, sums):
     place, quanta, out = bins.place[worker.thread], bins.terms[worker.thread], sums[worker.thread]
     terms = integers(scales)
     first, last = share(bins.last - bins.first, worker.thread, worker.threads)
+    # Bins are treated as the cells of a step. First, bin and rounded terms of each lane, as
+    # vectors; then integer sums, of which each thread has its own.
     for b in range(bins.first + first, bins.first + last):
         strip = data[strip_at(b, rows)]
         for i in range(LANES):
@@ -111,12 +115,15 @@ def modes(worker, zero, masses, box, particles, waves, out):
     """Fourier sums of mass and momentum as fixed-point sums: out (threads, waves, 2 (1 + d)).
 
     Each row holds mass times cosine and minus sine, then the same of each component of the
-    momentum; each sum has a multiple of LANES terms, zero in spare lanes and of those who do not
-    count.
+    momentum; each sum has a multiple of LANES terms, zero in spare lanes and for particles that do
+    not count.
     """
     data, rows = particles.data, particles.rows
     filling, d = particles.filling, len(zero)
     first, last = share(strips_in(filling), worker.thread, worker.threads)
+    # Wave by wave within a strip, which stays in the cache for all of them. Phases are reduced to
+    # one turn before sine and cosine. Lanes that do not count have mass 0, so the loop has no
+    # branch.
     for b in range(first, last):
         strip = data[strip_at(b, rows)]
         lanes = lanes_in(filling, b)
@@ -138,7 +145,7 @@ def modes(worker, zero, masses, box, particles, waves, out):
 
 
 class Looked(NamedTuple):
-    """Who is looked at, and what is found of them."""
+    """The particles to read, and the memory for their readings."""
 
     slots: Any  # by particle number: that among those looked at, or -1; or places in memory
     position: Any
@@ -168,7 +175,7 @@ def gather_at(worker, zero, box, particles, unwrapped, looked):
 
 @scalar
 def look_at(b, i, zero, box, particles, unwrapped, looked, slot):
-    """Write down what lane i of strip b is and does."""
+    """Store position, velocity and images of lane i of strip b."""
     d, strip, j = len(zero), particles.data[strip_at(b, particles.rows)], b * LANES + i
     r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
     crossed, image = scaled(0.0, zero), particles.image

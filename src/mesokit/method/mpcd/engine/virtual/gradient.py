@@ -1,11 +1,11 @@
-"""How fast the fluid's velocity rises with the distance from each piece of surface.
+"""The rise of the fluid's velocity with the distance from each piece of surface.
 
 Virtual particles at rest with a wall drag the fluid as if the wall lay deeper: in the part of a
 cell that is solid the fluid's profile would go on, to velocities beyond the wall's. With the rate
 of the profile known they can move like that; the wall is then where it should be.
 
 Next to a surface the velocity relative to it is s h + q h^2 at the height h. Two cells of fluid in
-front of each piece, free of solid, tell u / h = s + q h at two heights; where the second is not
+front of each piece, free of solid, give u / h = s + q h at two heights; where the second is not
 free, q is taken for 0.
 """
 
@@ -25,7 +25,7 @@ EVERY = 4  # steps from one look at a piece to the next: sooner, the same partic
 MEMORY = EVERY / 256.0  # weight of one look
 PROBES = 2
 APART = 1.0  # cells between the places where fluid is looked for
-LEAST_APART = 0.5  # of the first mean height: nearer to one another, two tell no bend
+LEAST_APART = 0.5  # of the first mean height: closer probes give no reliable bend
 
 
 @scalar
@@ -46,14 +46,14 @@ def flow_at(rates, piece, above, zero):
 
 
 def follow_pieces(worker, now, physics, fluid, walls):
-    """Update what is known at every EVERYth piece of surface, from this step's cells."""
+    """Update the flow at every EVERYth piece of surface, from this step's cells."""
     _follow(worker, now, physics, fluid.cells.sums, walls.virtual)
     barrier(worker)
 
 
 @by_type
 def _follow(worker, now, physics, sums, virtual):
-    """All pieces; a rank of several only notes what it sees, which `ranks.flow` takes up."""
+    """All pieces on one rank; one of several ranks only stores values for `messages.flow`."""
     if len(field_of(virtual, "seen")) == 0:
         return lambda worker, now, physics, sums, virtual: _follow_all(
             worker, now, physics, sums, virtual
@@ -67,6 +67,7 @@ def _follow_all(worker, now, physics, sums, virtual):
     begin, end = share(
         (len(virtual.terms) + EVERY - 1 - turn) // EVERY, worker.thread, worker.threads
     )
+    # Every fourth piece at each step, in turn. A running mean belongs to one piece and one thread.
     for e in range(turn + EVERY * begin, turn + EVERY * end, EVERY):
         for p in range(PROBES):
             good, seen = look(virtual, e, p, physics, now.grid, sums)
@@ -79,6 +80,8 @@ def _follow_all(worker, now, physics, sums, virtual):
 def _see(worker, now, physics, sums, virtual):
     turn, pieces = np.int64(now.counter.step) % EVERY, virtual.seen.here
     begin, end = share(len(pieces), worker.thread, worker.threads)
+    # The same pieces as on one rank, but only probes in own cells: their sums are complete here.
+    # `receive_coefficients` updates the means when values of all ranks are there.
     for j in range(begin, end):
         e = pieces[j]
         for p in range(PROBES if e % EVERY == turn else 0):
@@ -93,7 +96,7 @@ def _see(worker, now, physics, sums, virtual):
 
 @scalar
 def probe_at(virtual, e, p, zero):
-    """Where fluid is looked for."""
+    """The place of a probe."""
     for k in range(len(zero)):
         place = virtual.probes[e, k] + p * APART * virtual.outward[e, k]
         zero = with_item(zero, k, place)
@@ -102,7 +105,7 @@ def probe_at(virtual, e, p, zero):
 
 @scalar
 def look(virtual, e, p, physics, grid, sums):
-    """What is seen at a probe, u / h (d) and h: not good if its cell is empty or holds solid."""
+    """Whether the cell of a probe has fluid alone, and then u / h (d) and h there."""
     solid, zero = physics.solid, physics.zero
     probe, n = probe_at(virtual, e, p, zero), zero
     middle = probe
@@ -124,7 +127,7 @@ def look(virtual, e, p, physics, grid, sums):
 
 @scalar
 def average_probe(rates, e, p, seen, zero):
-    """Take what was seen at a probe into its means."""
+    """Update the running means of a probe."""
     d = len(zero)
     place = 2 * d + p * (d + 1)
     for k in range(d + 1):
@@ -138,6 +141,8 @@ def straighten(rates, e, zero):
     d = len(zero)
     near, far = rates[e, 3 * d], rates[e, 4 * d + 1]
     apart = far - near
+    # Through the two means u / h = s + q h, at heights h in cells, component by component. Where
+    # the probes are too close to each other, q is 0.
     for k in range(d):
         a, b = rates[e, 2 * d + k], rates[e, 3 * d + 1 + k]
         bent = apart > LEAST_APART * near

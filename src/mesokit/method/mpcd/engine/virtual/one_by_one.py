@@ -1,4 +1,4 @@
-"""Virtual particles of walls one by one, for rules that can tell and for mixtures.
+"""Virtual particles of walls one by one, for mixtures and rules that need more than sums.
 
 Each cut cell draws as many places as the fluid would have particles there, a Poisson number, and
 keeps those that lie in a solid: their number is then that of an ideal gas in the solid part of the
@@ -47,6 +47,9 @@ def fill_one_by_one(worker, now, physics, fluid, walls):
     start = virtual.starts[offset]
     begin, end = share(virtual.starts[offset + 1] - start, worker.thread, worker.threads)
     count = 0
+    # Each cut cell draws as many places as a cell full of fluid has particles, and keeps those in
+    # solid: the rest is again Poisson. Numbers and places follow from the cell's number in the
+    # whole box, so neither threads nor ranks matter.
     for entry in range(start + begin, start + end):
         key = virtual.keys[entry]
         for j in range(poisson_number(virtual.density, counter, VIRTUAL_NUMBER, key)):
@@ -57,7 +60,7 @@ def fill_one_by_one(worker, now, physics, fluid, walls):
 
 
 class Candidate(NamedTuple):
-    """A virtual particle that may be: whose, how many that thread has, its cut cell and number."""
+    """A possible virtual particle: thread, number of those held, cut cell and particle number."""
 
     thread: int
     held: int
@@ -106,6 +109,9 @@ def draw_velocities(virtual, count, worker, now, physics, fluid):
     terms, sums = fluid.scratch.terms[thread], fluid.cells.sums[thread]
     d = len(zero)
     virtual.filled[thread] = count
+    # The virtual particles of a thread lie in strips like those of the fluid, and pass the same
+    # stages. What they bring into the collision is subtracted from what walls take; `recoil` adds
+    # what they have after it.
     for s in range((count + LANES - 1) // LANES):
         strip, lanes = virtual.data[thread][strip_at(s, rows)], min(LANES, count - s * LANES)
         here = virtual.cell[thread, s * LANES : (s + 1) * LANES]
@@ -134,7 +140,7 @@ def take_momentum(virtual, worker, physics, s, strip, impulse, sign):
 
 
 def recoil_one_by_one(worker, now, physics, fluid, walls):
-    """What walls take by the collision of the virtual particles in them."""
+    """Add the impulse that walls take by the collision of the virtual particles in them."""
     virtual, thread = walls.virtual, worker.thread
     gathered, impulse = fluid.scratch.coefficients[thread], fluid.taken.impulse[thread]
     if now.flags & MEASURE_WALLS:
@@ -156,6 +162,8 @@ def top_up(worker, now, physics, fluid, walls):
     start = virtual.starts[offset]
     begin, end = share(virtual.starts[offset + 1] - start, worker.thread, worker.threads)
     count = 0
+    # `present` counts particles of the fluid of all threads and ranks, so sums must be complete. A
+    # thread reads its own cut cells only, and its virtual particles lie in these: no race.
     for entry in range(start + begin, start + end):
         key = virtual.keys[entry]
         present = number_in_cell(physics, fluid.cells.sums, virtual.cells[entry])

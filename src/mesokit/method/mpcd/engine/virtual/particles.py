@@ -45,12 +45,12 @@ class VirtualParticles(NamedTuple):
 
 
 class FlowAtSurface(NamedTuple):
-    """What a rank of several sees of the flow at pieces of surface, and whom it tells.
+    """The flow at pieces of surface that one rank of several measures and sends to its partners.
 
     limits: its block of cells, as two tuples of floats. here (pieces here,): pieces near it.
-    step (pieces, PROBES), values (pieces, PROBES, d + 1): when something was last seen at a probe,
-    and what.
-    given_starts (partners + 1,), given: the pieces that each of the others keeps.
+    step (pieces, PROBES), values (pieces, PROBES, d + 1): last step with a value of a probe, and
+    the value.
+    given_starts (partners + 1,), given: the pieces near the block of each partner.
     """
 
     limits: tuple

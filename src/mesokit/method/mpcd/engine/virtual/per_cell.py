@@ -1,7 +1,7 @@
 """Virtual particles of walls, all of a cell at once.
 
-A rule that asks only for the number, momentum and energy of a cell's particles cannot tell whether
-these were drawn one by one. The solid part of a cut cell holds a Poisson number N of them; their
+If a rule needs only number, momentum and energy of a cell's particles, these need not be drawn one
+by one. The solid part of a cut cell holds a Poisson number N of them; their
 momentum is that of one particle N times as heavy, and the energy of their motion about their mean
 is kT/2 times a chi-square number of d (N - 1) degrees of freedom. The part that is solid follows
 from a plane for each cut cell and offset of the grid: tables give its normal and its height,
@@ -48,7 +48,7 @@ PLACE, THERMAL, MEAN, DEPTH, NUMBER, CHANCE, LEFT, INNER, HEIGHT = 0, 3, 6, 7, 8
 
 @scalar
 def moved_by(solid, grid, zero):
-    """How far the grid is from the middle of its interval of offsets."""
+    """The displacement of the grid from the middle of its interval of offsets."""
     for k in range(len(zero)):
         many = offsets_along(solid, zero)
         within = grid.origin[k] * many
@@ -64,6 +64,8 @@ def cut_batch(virtual, start, count, solid, grid, work, zero):
     """
     cells, d, moved = virtual.per_cell, len(zero), moved_by(solid, grid, zero)
     entries = len(cells.heights)
+    # Tables have a row for each axis and the batch any start in them, so rows are copied first. The
+    # last loop then is one over vectors.
     for k in range(d):
         for i in range(count):
             work[(PLACE + k) * SCRATCH_ROW + i] = cells.places[k * entries + start + i]
@@ -71,6 +73,8 @@ def cut_batch(virtual, start, count, solid, grid, work, zero):
             work[(THERMAL + k) * SCRATCH_ROW + i] = cells.normals[k * entries + start + i]
     for i in range(count):
         work[HEIGHT * SCRATCH_ROW + i] = cells.heights[start + i]
+    # Plane and cell are shifted against each other by the grid shift of the step, in cells. The
+    # height of the middle over the plane changes, the normal does not.
     for i in range(LANES):
         middle = load_scratch(work, PLACE * SCRATCH_ROW + i, zero)
         n = load_scratch(work, THERMAL * SCRATCH_ROW + i, zero)
@@ -92,6 +96,9 @@ def count_batch(numbers, counter, work):
         most = max(most, work[MEAN * SCRATCH_ROW + i])
         work[NUMBER * SCRATCH_ROW + i] = 0.0
     draw = 0
+    # Inversion, for all lanes in step: chances of 0, 1, 2, ... are taken off a uniform number until
+    # it is negative. Means above MOST_MEAN are drawn in parts, whose sum is Poisson again. Lanes
+    # that are done go on without effect, so a number depends on its cell only.
     while most > 0.0:
         for i in range(LANES):
             a, _, _, _ = words(counter, VIRTUAL_NUMBER, numbers[i], draw)
@@ -144,6 +151,9 @@ def _fill(worker, now, physics, sums, virtual):
     first = virtual.starts[offset]
     begin, end = share(virtual.starts[offset + 1] - first, worker.thread, worker.threads)
     filled = 0
+    # Batches of cut cells: depth of the cut, numbers and thermal velocities as vectors, then cells
+    # with particles one by one. Random words follow from the number of the cell in the whole box. A
+    # thread adds to its own sums, so shares change no bit.
     for start in range(begin, end, LANES):
         count = min(LANES, end - start)
         cut_batch(virtual, first + start, count, physics.solid, now.grid, work, zero)
@@ -161,7 +171,7 @@ def _fill(worker, now, physics, sums, virtual):
 
 
 class Place(NamedTuple):
-    """Of one cell: whose it is, its number with this thread, its entry, its number in the whole
+    """A cut cell: its thread, its number there, its entry in the tables, its number in the whole
     box, and its lane."""
 
     thread: int
@@ -219,7 +229,7 @@ def add_many(sums, start, number, tallied, terms):
 
 
 def recoil_per_cell(worker, now, physics, fluid, walls):
-    """What walls take by the collision of the cells that they cut."""
+    """Add the impulse that walls take by the collision in the cells that they cut."""
     if now.flags & MEASURE_WALLS:
         _recoil(worker, now, of_walls(physics), fluid, walls.virtual)
 
@@ -229,6 +239,8 @@ def _recoil(worker, now, physics, fluid, virtual):
     solid, cells, zero = physics.solid, virtual.per_cell, physics.zero
     d, thread, scale = len(zero), worker.thread, momentum_scale(physics)
     coefficients, impulse = fluid.cells.coefficients, fluid.taken.impulse[thread]
+    # Momentum that virtual particles gain by the collision at t + dt, which walls take as an
+    # impulse. A thread has the cells that it filled; impulses are added as integers.
     for i in range(cells.filled[thread]):
         v, kept, r = zero, zero, zero
         for k in range(d):

@@ -16,7 +16,7 @@ PROBE = 1.0  # from a plate to where fluid is first looked for: the cell there i
 
 
 def ends(plates: Plates, size: tuple[int, ...]) -> list[tuple[int, float, float]]:
-    """Of the plates that hold virtual particles: number, height along the axis, normal."""
+    """The plates that hold virtual particles: number, height along the axis, normal."""
     length = float(size[AXES.index(plates.axis)])
     both = ((0, 0.0, 1.0, plates.lower), (1, length, -1.0, plates.upper))
     return [(term, at, up) for term, at, up, surface in both if surface.rule != "slip"]

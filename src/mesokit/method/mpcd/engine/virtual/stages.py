@@ -29,7 +29,7 @@ def fill_walls(worker, now, physics, fluid, walls):
 
 @by_type
 def follow_flow(worker, now, physics, fluid, walls):
-    """How the fluid's velocity rises with the distance from surfaces, where that is asked."""
+    """Measure how the fluid's velocity rises from surfaces, if a wall needs it."""
     return follow_pieces if _has(walls, "gradient") else _nothing
 
 
@@ -41,7 +41,7 @@ def top_up_walls(worker, now, physics, fluid, walls):
 
 @by_type
 def recoil(worker, now, physics, fluid, walls):
-    """What walls take by the collision of the virtual particles in them."""
+    """Add the impulse that walls take by the collision of the virtual particles in them."""
     if not _has(walls, "virtual"):
         return _nothing
     return per_cell.recoil_per_cell if drawn_per_cell(walls) else one_by_one.recoil_one_by_one

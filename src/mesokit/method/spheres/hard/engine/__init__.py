@@ -1,1 +1,1 @@
-"""The compiled machinery: spheres in memory, who is near whom, what comes next and happens."""
+"""The compiled machinery: spheres in memory, neighbour lists, the queue of events, collisions."""

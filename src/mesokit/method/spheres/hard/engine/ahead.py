@@ -1,7 +1,7 @@
-"""What the next events will read, asked for before it is due.
+"""Prefetch of the memory that the next events will read.
 
-Events are at random places of a large gas: each would wait for memory again and again. The heap
-knows some that come soon. Nothing but the time that events take depends on it.
+Events are at random places of a large gas, so each would wait for memory again and again. The heap
+holds some of the next events. Only the speed depends on this.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ from mesokit.scalar.prefetch import LINE, prefetch
 
 @scalar
 def ask_for_next(spheres, lists, queue):
-    """The states of all on the lists of those whose events may be next."""
+    """Prefetch the states of the neighbours of spheres with the next events."""
     for place in range(1, min(3, queue.now[SIZE])):
         i = queue.heap[place]
         ask_for_others(spheres, lists, i)
@@ -25,14 +25,14 @@ def ask_for_next(spheres, lists, queue):
 
 @scalar
 def ask_for_others(spheres, lists, i):
-    """The states of all on the list of a sphere."""
+    """Prefetch the states of the neighbours of a sphere."""
     for a in range(lists.count[i]):
         prefetch(spheres.state, lists.near[i, a], 0)
 
 
 @scalar
 def ask_for_lists(spheres, lists, queue, i):
-    """What is known of sphere i and of its partner, and their lists."""
+    """Prefetch states and lists of sphere i and of its partner."""
     j = queue.event[i, PARTNER]
     ask_for_list(spheres, lists, i)
     if j >= 0:
@@ -42,7 +42,7 @@ def ask_for_lists(spheres, lists, queue, i):
 
 @scalar
 def ask_for_list(spheres, lists, i):
-    """What is known of a sphere, and its list."""
+    """Prefetch state and list of a sphere."""
     prefetch(spheres.state, i, 0)
     prefetch(spheres.body, i, 0)
     prefetch(spheres.hits, i, 0)

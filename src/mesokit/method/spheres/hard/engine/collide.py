@@ -1,4 +1,4 @@
-"""What happens when spheres touch one another, or a wall."""
+"""Collisions of spheres with one another and with walls."""
 
 import math
 from typing import Any, NamedTuple
@@ -96,7 +96,7 @@ def add_impulse(spheres, i, v, impulse, turned):
 
 @scalar
 def surface_velocity(spheres, i, v, lever):
-    """How fast the surface of sphere i moves at the end of a lever."""
+    """The velocity of the surface of sphere i at the end of a lever."""
     return added_scaled(v, 1.0, rolled(spin_of(spheres.body, i, v), lever))
 
 
@@ -212,7 +212,7 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
 
 @scalar
 def wall_restitution(rules, w, speed):
-    """That of the wall, or of two spheres where it has none of its own."""
+    """The restitution of a wall, or that of two spheres if the wall has none."""
     given = rules.at_walls[w, 0]
     return given if given >= 0.0 else restitution(rules.pair, speed)
 

@@ -161,7 +161,7 @@ class EventDriven:
         return np.array([float(not shut) for shut in self.system.given.closed])
 
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
-        """How many boxes away the spheres are, (n, d)."""
+        """Image counts (n, d) of the spheres."""
         places = self._read()[0][_chosen(ids)]
         return (np.floor(places / self.box) * self._repeats).astype(np.int32)
 

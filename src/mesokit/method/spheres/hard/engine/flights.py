@@ -1,6 +1,6 @@
-"""How long spheres fly from one collision to the next, where somebody wants to know.
+"""Free flights of spheres from one collision to the next, if an observable reads them.
 
-Where nobody does `Tally.flights` is `()`, and nothing of this is compiled.
+Else `Tally.flights` is `()`, and nothing of this is compiled.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the compiled functions work on, by name.
+"""The memory of the compiled functions, by name.
 
 Spheres lie in memory in an order of their own (places); `number` is the particle number of each.
 All times are since the start of the window in which the run is.
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 TIME, VELOCITY, RADIUS, WIDTH = 3, 4, 7, 8
 # columns of `Spheres.body`
 MASS, INERTIA, LAST, SPIN, BODY_WIDTH = 0, 1, 2, 3, 6
-# columns of `Queue.event`: with whom, how many collisions that one had had (the last 32 bits);
+# columns of `Queue.event`: the partner, and its collisions when predicted (the last 32 bits);
 # BIN is -1 for those in the heap, PLACE is where they are in it
 PARTNER, PARTNER_HITS, AFTER, PREVIOUS, BIN, PLACE, EVENT_WIDTH = 0, 1, 2, 3, 4, 5, 8
 # what a sphere's next event is with, where it is with no other sphere
@@ -24,7 +24,7 @@ DONE, FULL, COLLAPSED, PAUSED, FAILED = 0, 1, 2, 3, 4
 
 
 class World(NamedTuple):
-    """What does not change: lengths (d,) of the box, their inverses (d,; 0 along closed axes),
+    """The constants of a run: lengths (d,) of the box, their inverses (d,; 0 along closed axes),
     acceleration (d,), relative rate at which diameters grow, walls (walls, 16), and `lasting`:
     collisions less than this after another are elastic; `instant`: a time that is none."""
 
@@ -49,7 +49,7 @@ class SphereMemory(NamedTuple):
 
 
 class Lists(NamedTuple):
-    """Who may meet whom before one of them is `shell` away from where its list was made.
+    """Neighbour lists: pairs that may collide before one of them is `shell` away from its centre.
 
     centre (n, 4): these places, and how far one may go; cells (d,), per_length (d,): of the grid;
     cell (n,), head (cells,), following (n,), before (n,): the centres of each cell, linked;
@@ -89,8 +89,11 @@ class Queue(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """What has happened: counts (4,), sums (1,), momentum that each wall has taken (walls, d), and
-    flights, see `flights`; () where nobody asks for them."""
+    """Counts and sums over events.
+
+    counts (4,), sums (1,); impulse (walls, d): momentum that each wall has taken; flights: see
+    `flights`, () where no observable reads them.
+    """
 
     counts: Any
     sums: Any

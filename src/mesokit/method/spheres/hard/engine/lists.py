@@ -1,7 +1,8 @@
 """Lists of neighbours: two spheres are on one another's list if their centres allow them to meet.
 
-A centre is where a sphere was when its list was made. It is renewed when the sphere has come a
-shell away from it, alone: others are told. So a grid of centres serves, and nobody crosses cells.
+A centre is where a sphere was when its list was made. When the sphere is a shell away from
+it, this sphere alone gets a new centre and list, and enters the lists of others. Spheres cross no
+cells, as only centres lie in the grid.
 """
 
 import math
@@ -46,6 +47,8 @@ def unlink(lists, i):
 @scalar
 def forget(lists, i):
     """Take i off the lists of all others, and empty its own."""
+    # Lists are mutual: i is on the list of each of its neighbours. The last entry there takes its
+    # place; the order of lists does not matter, since equal times are decided by particle numbers.
     for a in range(lists.count[i]):
         j = lists.near[i, a]
         last = lists.count[j] - 1
@@ -69,8 +72,10 @@ def renew(world, lists, state, i, r):
 
 @scalar
 def find(world, lists, state, i, r):
-    """All that may meet i, on its list and i on theirs; whether there was room."""
+    """Put all spheres that may meet i on its list, and i on theirs; true if there was room."""
     d, room = len(r), True
+    # Cells around the centre, each at least as long as two centres may be apart and still matter.
+    # With fewer than three cells along an axis `wrapped` has each of them once.
     for a in range(-1, 2):
         x = wrapped(world, lists, 0, cell_along(lists, 0, r[0]) + a)
         for b in range(-1, 2):
@@ -101,9 +106,11 @@ def wrapped(world, lists, k, cell):
 
 @scalar
 def take(world, lists, state, i, r, cell):
-    """Those of a cell that may meet i."""
+    """Put the spheres of a cell that may meet i on the lists; true if there was room."""
     most, j, room = lists.near.shape[1], lists.head[cell], True
     mine = state[i, RADIUS] * lists.widest + 2.0 * lists.shell
+    # Two spheres can meet before either is renewed if their centres are nearer than both radii and
+    # two shells. Lists are mutual, so `forget` can take a sphere off all of them.
     while j >= 0:
         apart = nearest_image(world, added_scaled(entries(lists.centre, j, 0, r), -1.0, r))
         reach = mine + state[j, RADIUS] * lists.widest

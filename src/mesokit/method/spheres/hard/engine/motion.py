@@ -1,4 +1,4 @@
-"""Free flight: where a sphere is at a time, and when two of them touch."""
+"""Free flight: the place of a sphere at a time, and the time at which two spheres touch."""
 
 from typing import NamedTuple
 
@@ -32,14 +32,14 @@ def fallen(r, tau, v, g):
 
 @scalar
 def place_at(world, state, i, time):
-    """Where sphere i is at a time."""
+    """The place of sphere i at a time."""
     r, v = entries(state, i, 0, world.size), entries(state, i, VELOCITY, world.size)
     return fallen(r, time - state[i, TIME], v, world.gravity)
 
 
 @scalar
 def velocity_at(world, state, i, time):
-    """How fast sphere i is at a time."""
+    """The velocity of sphere i at a time."""
     v = entries(state, i, VELOCITY, world.size)
     return added_scaled(v, time - state[i, TIME], world.gravity)
 

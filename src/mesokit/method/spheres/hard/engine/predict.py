@@ -1,4 +1,4 @@
-"""What happens to a sphere next."""
+"""The prediction of the next event of a sphere."""
 
 import math
 
@@ -30,7 +30,7 @@ EIGHT = 8  # lengths of lists are multiples of it
 
 @scalar
 def predict(world, rules, spheres, lists, queue, i, now):
-    """Find the next event of sphere i, and write it down; the queue is told by the caller."""
+    """Find the next event of sphere i and store it; the caller puts it into the queue."""
     state, number = spheres.state, spheres.number
     r, v = place_at(world, state, i, now), velocity_at(world, state, i, now)
     leaves = time_to_leave(world, lists, r, v, entries(lists.centre, i, 0, r))
@@ -42,6 +42,8 @@ def predict(world, rules, spheres, lists, queue, i, now):
         collide_all(world, rules, state, lists, i, one, now, world.growth)
     else:
         collide_all(world, rules, state, lists, i, one, now, 0.0)
+    # The soonest contact; of equal times the one with the lower particle number, so that the order
+    # of the list does not matter.
     for a in range(near):
         if times[a] <= best:
             j = lists.near[i, a]
@@ -66,6 +68,9 @@ def collide_all(world, rules, state, lists, i, one, now, growth):
     What lies beyond the end of the list is old and never read.
     """
     near, columns = lists.count[i], lists.columns
+    # A gather from rows of states, one cache line each, into columns. Then the times of eight
+    # contacts are found at once, as vectors. Each state is that of the last event of its sphere;
+    # free flight gives the place now.
     for a in range(near):
         j = lists.near[i, a]
         for k in range(WIDTH):

@@ -51,6 +51,8 @@ def rise(queue, number, place):
 def sink(queue, number, place):
     """Bring an entry of the heap down to where it belongs."""
     i, size = queue.heap[place], queue.now[SIZE]
+    # The sooner of the two events below moves up, until both are later. Equal times are ordered by
+    # particle numbers, so the order of events does not depend on the history of the heap.
     while 2 * place + 1 < size:
         below = 2 * place + 1
         if below + 1 < size and sooner(queue, number, queue.heap[below + 1], queue.heap[below]):
@@ -118,8 +120,10 @@ def remove(queue, number, i):
 
 @scalar
 def next_event(queue, number, end):
-    """Whose event is next, -1 if it is not before the end."""
+    """The sphere with the next event, -1 if there is none before the end."""
     bins = len(queue.first)
+    # An empty heap takes all events of the next bin. The calendar is a ring: an event farther ahead
+    # than all bins waited in the last one, and `insert` puts it off again. Bins before `end` only.
     while queue.now[SIZE] == 0:
         if queue.now[CURRENT] >= bin_at(queue, end):
             return -1

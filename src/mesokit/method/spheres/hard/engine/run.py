@@ -34,7 +34,7 @@ from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar
 
 MANY = 100  # collisions in a row that take no time
-AT_ONCE = 1_000_000  # events, so that signals are heard
+AT_ONCE = 1_000_000  # events, after which Python can treat signals
 
 
 @kernel
@@ -42,6 +42,10 @@ def advance(world, rules, spheres, lists, queue, tally, end):
     """Do all events before a time; how it ended: DONE, FULL lists, COLLAPSED, PAUSED, or
     FAILED where no time was found at which a sphere meets a wall."""
     number, bin_before = spheres.number, np.int64(-1)
+    # One event at a time, in the order of time, by one thread. Only spheres of the event move, from
+    # their own last time to now; all others wait. A predicted hit counts only if the partner has
+    # not collided since (`hits`); if it has, the sphere just gets a new prediction. After each
+    # event the spheres concerned leave the queue, predict, and enter again.
     for _ in range(AT_ONCE):
         i = next_event(queue, number, end)
         if i < 0:
@@ -79,7 +83,7 @@ def advance(world, rules, spheres, lists, queue, tally, end):
 
 @scalar
 def boxed(world, state, i, now):
-    """Where sphere i is, in the box."""
+    """The place of sphere i, in the box."""
     r = place_at(world, state, i, now)
     for k in range(len(r)):
         r = with_item(r, k, r[k] - floor(r[k] * world.inverse[k]) * world.size[k])
@@ -92,6 +96,8 @@ def rebuild(world, rules, spheres, lists, queue, now):
     n, room = len(spheres.number), True
     lists.head[:] = -1
     lists.count[:] = 0
+    # A sphere is linked after its search, so each pair is found once, from its second sphere, and
+    # written on both lists.
     for i in range(n):
         r = boxed(world, spheres.state, i, now)
         put_entries(lists.centre, i, 0, r)
@@ -120,7 +126,7 @@ def synchronise(world, spheres, time):
 
 @kernel
 def read(world, spheres, now, places, velocities):
-    """Where all are now, not brought into the box, and how fast, by particle number; their states
+    """Store places, not brought into the box, and velocities now, by particle number; the states
     stay as they are."""
     for i in range(len(spheres.number)):
         put_entries(places, spheres.number[i], 0, place_at(world, spheres.state, i, now))

@@ -44,7 +44,7 @@ def scattered(
 
 @kernel
 def add_all(world, cells, head, following, radii, places, seed):
-    """How many find no place."""
+    """Place all spheres; returns the number of those that find no place."""
     for i in range(len(radii)):
         found = False
         for attempt in range(TRIES):

@@ -142,7 +142,7 @@ class System:
             array[:] = array[order]
 
     def widest(self, shell: float) -> float:
-        """How far apart centres of neighbours may be."""
+        """The longest distance of the centres of neighbours."""
         largest = 2.0 * float(self.spheres.state[:, groups.RADIUS].max())
         return largest * self.swelling + 2.0 * shell
 
@@ -276,7 +276,7 @@ class System:
         )
 
     def _collapse(self) -> str:
-        """Who collides without end, and when."""
+        """The spheres that collide without end, and the time."""
         i = int(self.queue.heap[0])
         now = self.windows * self.window + float(self.queue.time[i])
         many = np.argsort(-self.spheres.hits, kind="stable")[:2]

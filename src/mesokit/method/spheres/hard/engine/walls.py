@@ -63,6 +63,10 @@ def time_to_wall(world, state, i, w, until):
         distance, normal = outward(world, w, r)
         return since + fall(distance - radius, dot(v, normal), dot(g, normal))
     tau = 0.0
+    # March in steps that end before the contact. For the time `longest` the gap shrinks no faster
+    # than a parabola, with the closing speed now and a bound of its growth. A vibrating plate does
+    # not matter until the sphere is within its amplitude. A gap below rounding is a contact if it
+    # closes.
     for _ in range(STEPS):
         gap, closing, bend, longest = approach(world, state, i, w, tau)
         if gap <= CLOSE * radius + unsure(world, state, i, w, tau):
@@ -77,7 +81,7 @@ def time_to_wall(world, state, i, w, until):
 
 @scalar
 def unsure(world, state, i, w, tau):
-    """What rounding may make of the gap after a time: of places, and of the time of fast ones."""
+    """The rounding error of the gap after a time: of places, and of times of fast spheres."""
     walls, g = world.walls, world.gravity
     r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
     place, pull, then = entries(walls, w, PLACE, g), math.sqrt(dot(g, g)), state[i, TIME] + tau
@@ -88,7 +92,7 @@ def unsure(world, state, i, w, tau):
 
 @scalar
 def until_near(world, state, i, w, tau):
-    """How long a sphere flies until it comes to where a vibrating plate may be; 0 elsewhere."""
+    """The time until a sphere is within the amplitude of a vibrating plate; 0 for other walls."""
     walls, g = world.walls, world.gravity
     if walls[w, KIND] != PLANE or world.growth != 0.0:
         return 0.0
@@ -146,7 +150,7 @@ def approach(world, state, i, w, tau):
 
 @scalar
 def next_image(world, w):
-    """How far away the nearest image of a round wall is, infinite if there is none."""
+    """The distance of the nearest image of a round wall, infinite if there is none."""
     nearest = math.inf
     for k in range(len(world.size)):
         if world.inverse[k] > 0.0 and abs(world.walls[w, AXIS + k]) < 0.999:

@@ -1,4 +1,4 @@
-"""What the loops ask of a law: the force on one sphere, and in which quanta it is counted."""
+"""The functions that a law must have: forces on spheres, their quanta, and readings of a sphere."""
 
 from mesokit.scalar.jit import generic
 
@@ -11,30 +11,30 @@ def act(law, mine, time, step, world, noted, room):
 
 @generic
 def quantum(law):
-    """The force that is counted as one."""
+    """The force that counts as one."""
 
 
 @generic
 def turns(law):
-    """Whether it makes spheres turn, as a literal."""
+    """Whether the law makes spheres turn, as a literal."""
 
 
 @generic
 def ahead(law):
-    """How far beyond the reach a pair is looked at."""
+    """Distance beyond the reach at which a pair already counts as near."""
 
 
 @generic
 def beside(solid, law, i, step, world, room):
-    """Add what a solid does to a sphere; a bound of it."""
+    """Add force and torque of a solid on a sphere; returns a bound of them."""
 
 
 @generic
-def tell_beside(solid, law, i, world, told):
-    """Add to what is told of a sphere what a solid adds."""
+def measure_beside(solid, law, i, world, readings):
+    """Add the contacts with a solid to the readings of a sphere."""
 
 
 @generic
-def tell(law, i, time, world, told):
-    """Add up what readers ask of a sphere, in quanta, in a row of eight: twice its share of the
-    potential energy, r F of its pairs (xx, yy, zz, xy, xz, yz), and how many touch it."""
+def measure(law, i, time, world, readings):
+    """Add up the readings of a sphere, in quanta, in a row of eight: twice its share of the
+    potential energy, r F of its pairs (xx, yy, zz, xy, xz, yz), and the number of contacts."""

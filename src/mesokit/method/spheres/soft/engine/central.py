@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.spheres.soft.engine.acting import act, ahead, quantum, tell, turns
+from mesokit.method.spheres.soft.engine.acting import act, ahead, measure, quantum, turns
 from mesokit.method.spheres.soft.engine.geometry import from_to, from_wall, reach, row
 from mesokit.method.spheres.soft.engine.groups import ENERGY, NEAREST, VIRIAL
 from mesokit.method.spheres.soft.engine.taken import take
@@ -59,6 +59,9 @@ def forces_from_list(law, i, world):
     bodies, box, lists = world.bodies, world.box, world.lists
     r = row(bodies.place, i)
     a, b, c, low = np.int64(0), np.int64(0), np.int64(0), FAR
+    # Each sphere adds up all its neighbours itself, both ways of a pair: no thread writes to
+    # spheres of another. Terms are whole quanta, so neither the order nor the length of a list
+    # matters. The list is filled up with the sphere itself, at distance 0, which adds nothing.
     for s in range(lists.count[i]):
         dx, dy, dz = from_to(box, bodies.place, lists.near[i, s], r)
         square = dx * dx + dy * dy + dz * dz
@@ -104,8 +107,8 @@ def apart(square):
     return bits(square) if square > 0.0 else FAR
 
 
-@tell.register(Central)
-def _(law, i, time, world, told):
+@measure.register(Central)
+def _(law, i, time, world, readings):
     bodies, box, lists, walls = world.bodies, world.box, world.lists, world.walls
     r = row(bodies.place, i)
     for s in range(lists.count[i]):
@@ -113,21 +116,21 @@ def _(law, i, time, world, told):
         if j != i:
             separation = from_to(box, bodies.place, j, r)
             energy, force_over_r = central(law.potential, dot(separation, separation))
-            told[ENERGY] += quanta(energy, law.scale)
-            add_product(told, law.scale, scaled(force_over_r, separation), separation)
+            readings[ENERGY] += quanta(energy, law.scale)
+            add_product(readings, law.scale, scaled(force_over_r, separation), separation)
     for w in range(len(walls.rows)):
         distance, _, _ = from_wall(walls.rows, w, box, r, time)
         if distance < 2.0 * reach(bodies, i):
             energy, _ = central(law.potential, distance * distance)
-            told[ENERGY] += quanta(2.0 * energy, law.scale)
+            readings[ENERGY] += quanta(2.0 * energy, law.scale)
 
 
 @scalar
-def add_product(told, scale, force, separation):
+def add_product(readings, scale, force, separation):
     """Add the products of a force and a vector to the virial of a sphere."""
-    told[VIRIAL] += quanta(force[0] * separation[0], scale)
-    told[VIRIAL + 1] += quanta(force[1] * separation[1], scale)
-    told[VIRIAL + 2] += quanta(force[2] * separation[2], scale)
-    told[VIRIAL + 3] += quanta(force[0] * separation[1], scale)
-    told[VIRIAL + 4] += quanta(force[0] * separation[2], scale)
-    told[VIRIAL + 5] += quanta(force[1] * separation[2], scale)
+    readings[VIRIAL] += quanta(force[0] * separation[0], scale)
+    readings[VIRIAL + 1] += quanta(force[1] * separation[1], scale)
+    readings[VIRIAL + 2] += quanta(force[2] * separation[2], scale)
+    readings[VIRIAL + 3] += quanta(force[0] * separation[1], scale)
+    readings[VIRIAL + 4] += quanta(force[0] * separation[2], scale)
+    readings[VIRIAL + 5] += quanta(force[1] * separation[2], scale)

@@ -96,7 +96,7 @@ class SoftEngine:
         return places + self.images(ids) * self.box if unwrapped else places
 
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
-        """How many boxes away the spheres are, (n, d)."""
+        """Image counts (n, d) of the spheres."""
         return self._rows("images", ids, self.dimension)
 
     def velocities(self, ids: Integers | None = None) -> Array:
@@ -141,9 +141,9 @@ class SoftEngine:
 
     def _told(self) -> Array:
         """Of every sphere, by number (n, 8), in units of the case but for the last: a number."""
-        told = self.system.told(self.time)
-        found = told * self.system.given.law.quantum
-        found[:, groups.TOUCHING] = told[:, groups.TOUCHING]
+        readings = self.system.readings(self.time)
+        found = readings * self.system.given.law.quantum
+        found[:, groups.TOUCHING] = readings[:, groups.TOUCHING]
         return found
 
     def moments(
@@ -164,7 +164,7 @@ class SoftEngine:
 
     def coordination(self) -> NDArray[np.int64]:
         """How many spheres and walls touch each one, (n,); 0 of a potential."""
-        return self.system.told(self.time)[:, groups.TOUCHING]
+        return self.system.readings(self.time)[:, groups.TOUCHING]
 
     @property
     def wall_impulse(self) -> Array:

@@ -1,4 +1,4 @@
-"""How far spheres are from one another and from walls."""
+"""Distances of spheres from one another and from walls."""
 
 import math
 
@@ -62,5 +62,5 @@ def from_wall(rows, w, box, r, time):
 
 @scalar
 def reach(bodies, i):
-    """How far a sphere reaches."""
+    """The reach of a sphere: its radius, or half of a cut-off."""
     return bodies.place[i, REACH]

@@ -1,6 +1,6 @@
-"""What the loops of soft spheres work on, by name.
+"""The memory of the loops of soft spheres, by name.
 
-A row of four numbers is one half of a cache line: what a neighbour is asked for comes at once.
+A row of four numbers is one half of a cache line: what a neighbour needs comes at once.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ REACH = 3  # column of `place`: how far a sphere reaches, a radius or half of a 
 INVERSE = 3  # column of `velocity` and `spin`: the inverse of mass and of moment of inertia
 FARTHEST, NEAREST, LARGEST, DONE, PENDING = range(5)  # columns of what threads note
 GAP = 8  # numbers between those of two threads: each has a cache line of its own
-ENERGY, VIRIAL, TOUCHING, TOLD = 0, 1, 7, 8  # columns of what is told of a sphere, and their number
+ENERGY, VIRIAL, TOUCHING, READINGS = 0, 1, 7, 8  # columns of the readings of a sphere
 
 
 class Bodies(NamedTuple):
@@ -40,7 +40,7 @@ class Box(NamedTuple):
 
 
 class Lists(NamedTuple):
-    """Who is near whom, by places in memory.
+    """Neighbour lists, by places in memory.
 
     skin: how far lists go beyond the reach; halves: whether laws take each pair once; count (n,)
     and near (n, most): the lists, filled up to whole groups of eight with the sphere itself; own
@@ -82,7 +82,7 @@ class Solid(NamedTuple):
 
 
 class World(NamedTuple):
-    """The spheres, the box, who is near whom, and the walls."""
+    """The spheres, the box, the neighbour lists and the walls."""
 
     bodies: Bodies
     box: Box

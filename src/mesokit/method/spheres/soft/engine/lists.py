@@ -1,4 +1,4 @@
-"""Spheres sorted by cells in memory, and lists of who is near whom."""
+"""Spheres sorted by cells in memory, and neighbour lists."""
 
 import numpy as np
 
@@ -16,6 +16,9 @@ GROUP = 8  # lists are filled up to whole groups, for which loops over vectors n
 def sort(grid, place, cell, begins, order):
     """The order of memory in which spheres of one cell lie together, and where each cell begins."""
     begins[:] = 0
+    # Counting sort: numbers of each cell, their running sum, then places. Taking places moves
+    # `begins` on by one cell, which the last loop reverts. Spheres of one cell keep their order in
+    # memory.
     for i in range(len(cell)):
         cell[i] = cell_of(grid, row(place, i))
         begins[cell[i] + 1] += 1
@@ -31,11 +34,16 @@ def sort(grid, place, cell, begins, order):
 
 @kernel
 def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
-    """All within reach and skin of each sphere. A list that has too little room is cut off, and
-    tells its length. `columns` (4, n) are places once more, each coordinate together; `scratch`
-    (threads, n) is for the loops here alone."""
+    """List all spheres within reach and skin of each sphere.
+
+    A list without enough room is cut off, but `count` has its full length. `columns` (4, n): places
+    again, coordinate by coordinate; `scratch` (threads, n): memory of these loops.
+    """
     first, last = share(len(bodies.number), worker.thread, worker.threads)
     beside = scratch[worker.thread]
+    # Cells around sphere i that its reach and the skin can touch. Cells along x lie one after
+    # another in memory: a row of cells is one span, or two across an end of the box. Sums of forces
+    # are integers, so the order of a list changes no bit.
     for i in range(first, last):
         found = 0
         y, z = bodies.place[i, 1], bodies.place[i, 2]
@@ -60,7 +68,7 @@ def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
 
 @scalar
 def off(grid, k, x, here, offset):
-    """How far the nearest place of a cell, so many after that of x, is from x along an axis."""
+    """Distance along an axis from x to the cell that is `offset` cells after that of x."""
     if offset == 0:
         return 0.0
     edge = float(here + offset + (0 if offset > 0 else 1)) / grid.inverse[k]
@@ -69,7 +77,7 @@ def off(grid, k, x, here, offset):
 
 @scalar
 def spans(grid, box, begins, line, here):
-    """Where the spheres of the cells around one along x lie in memory: together, but for those
+    """Spans of memory with the spheres of the cells around one along x: one, and another for those
     beyond an end of the box."""
     low, high, cells = here - grid.wide[0], here + grid.wide[0], grid.cells[0]
     middle = begins[line + max(low, 0)], begins[line + min(high, cells - 1) + 1]
@@ -92,6 +100,7 @@ def list_span(columns, box, lists, i, span, found, beside):
     whole = begin + ((end - begin + GROUP - 1) & -GROUP)
     xs, ys, zs = columns[0, begin:whole], columns[1, begin:whole], columns[2, begin:whole]
     beyond, reaches = columns[3, i] + lists.skin, columns[3, begin:whole]
+    # All squared distances of a span, up to a whole vector beyond its end.
     for k in range(np.uint64(whole - begin)):
         separation = nearest(box, (x - xs[k], y - ys[k], z - zs[k]))
         far = beyond + reaches[k]
@@ -99,6 +108,8 @@ def list_span(columns, box, lists, i, span, found, beside):
     if begin <= i < end:
         beside[i - begin] = 0
     last_place = lists.near.shape[1] - 1
+    # Each candidate is written at the end of the list, which grows only if it is near. A full list
+    # overwrites its last place and `found` goes on: the caller allocates longer lists.
     for k in range(np.uint64(end - begin)):
         lists.near[i, np.uint64(min(found, last_place))] = np.int32(np.uint64(begin) + k)
         found += beside[k]
@@ -109,6 +120,8 @@ def list_span(columns, box, lists, i, span, found, beside):
 def own_first(lists, i, found, first):
     """Put those in front that are not found from the sphere before in memory; how many they are."""
     own, room = 0, lists.near.shape[1]
+    # Partition in place: pairs that this sphere treats come first. A pair within a thread is
+    # treated once, from the sphere before in memory; a pair of two threads is treated by each.
     for s in range(min(found, room)):
         j, other = lists.near[i, s], lists.near[i, own]
         mine = not first <= j < i

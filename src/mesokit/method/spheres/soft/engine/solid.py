@@ -35,7 +35,7 @@ NEARER = 40  # steps of a ray to their surface
 
 
 class Place(NamedTuple):
-    """Distance from a term, the normal out of it, and the term, NOBODY if there is none."""
+    """Distance from a term, the normal out of it, and the term, NO_TERM if there is none."""
 
     distance: float
     normal: tuple[float, float, float]

@@ -1,4 +1,4 @@
-"""Velocity Verlet, by all threads, until the lists are stale.
+"""Velocity Verlet, by all threads, until the lists are outdated.
 
 Half a kick and the drift, the forces at the new places, half a kick. Dashpots along
 the normal see the velocities at the end of the step, others those of the half step. Forces are
@@ -38,6 +38,10 @@ def advance(worker, counter, steps, law, motion, world, noted, rooms):
         rooms.numbers[thread], rooms.counts[thread], rooms.pairs[thread], rooms.taken[thread]
     )
     done, pending = 0, mine[PENDING] != 0.0
+    # Half a kick (v: t -> t + dt/2), the drift (r: t -> t + dt), forces at t + dt, half a kick.
+    # Each thread writes its own spheres; the barriers are before and after forces, which read those
+    # of others. All threads see the same longest displacement, so all leave for new lists together.
+    # Then forces are pending: the call with new lists begins with them.
     while done < steps:
         now = Counter(counter.seed, counter.step + np.uint64(done))
         if not pending:

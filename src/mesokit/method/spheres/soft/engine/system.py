@@ -28,7 +28,7 @@ from mesokit.method.spheres.soft.engine.groups import (
     World,
 )
 from mesokit.method.spheres.soft.engine.lists import GROUP, make_lists, sort
-from mesokit.method.spheres.soft.engine.reading import tell_all
+from mesokit.method.spheres.soft.engine.reading import measure_all
 from mesokit.method.spheres.soft.engine.solid import MOST
 from mesokit.method.spheres.soft.engine.step import advance, find_forces
 from mesokit.method.spheres.soft.engine.taken import all_taken, in_numbers
@@ -41,7 +41,7 @@ ROUNDING = 1 + 1e-9  # what cells are larger than they need
 
 class Grid(NamedTuple):
     """Cells along each axis, their number per length, how many of them on both sides are looked
-    through, and the square of the farthest that anybody is listed."""
+    through, and the square of the longest distance that lists have."""
 
     cells: tuple[int, int, int]
     inverse: tuple[float, float, float]
@@ -219,7 +219,7 @@ class System:
     # --- lists ------------------------------------------------------------------------------------
 
     def renew(self) -> None:
-        """Sort spheres by cells, and list who is near whom."""
+        """Sort spheres by cells, and make neighbour lists."""
         bodies, spare = self.bodies, self.spare
         if not np.isfinite(bodies.place).all():
             raise RunError("places are no numbers any more; expected a shorter timestep")
@@ -310,11 +310,11 @@ class System:
         found[self.bodies.number] = rows
         return found
 
-    def told(self, time: float) -> NDArray[np.int64]:
-        """What `acting.tell` says of every sphere, by number, in quanta."""
-        told = np.zeros((self.n, groups.TOLD), np.int64)
-        self.worker.run(tell_all, time, self.given.law, self.world, told)
-        return self.by_number(told)
+    def readings(self, time: float) -> NDArray[np.int64]:
+        """Readings of every sphere, by number, in quanta; see `acting.measure`."""
+        readings = np.zeros((self.n, groups.READINGS), np.int64)
+        self.worker.run(measure_all, time, self.given.law, self.world, readings)
+        return self.by_number(readings)
 
     def state(self) -> dict[str, NDArray[Any]]:
         """All that the next step depends on, by particle number."""

@@ -1,4 +1,4 @@
-"""What surfaces take from spheres: forces in whole quanta, added up over steps without an order.
+"""The forces of spheres on surfaces, in whole quanta, added up over steps without an order.
 
 Sums grow beyond 64 bits. Each is two numbers, of which the low one has 32 bits.
 """

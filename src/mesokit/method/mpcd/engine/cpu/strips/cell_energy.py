@@ -1,4 +1,4 @@
-"""How cells learn their kinetic energy: not at all, in a column of their sums, or with the count.
+"""The kinetic energy of cells: not summed, in a column of their sums, or with the count.
 
 A thermostat does not need the last digits. Its energy shares an integer with the number of
 particles, 16 bits for the number and 48 for the energy: cells keep the width that they have without
@@ -23,7 +23,7 @@ SPARE = 2.0**16  # how much larger than thermal the energy of a cell of the mean
 
 
 class NotAsked(NamedTuple):
-    """Nobody needs the energy."""
+    """No rule or thermostat needs the energy."""
 
 
 class Column(NamedTuple):
@@ -43,12 +43,12 @@ def with_count(thermal: float, density: float) -> WithCount:
 
 @generic
 def energy_term(energy, m, v):
-    """What a particle adds to a column of its own: (m v^2,) or ()."""
+    """The term of a particle in a column of its own: (m v^2,) or ()."""
 
 
 @generic
 def tally(energy, m, v):
-    """What a particle adds to the integer that counts the particles: (integer,), or () for 1."""
+    """The term of a particle in the integer that counts the particles: (integer,), or () for 1."""
 
 
 @generic
@@ -58,17 +58,17 @@ def untangled(energy, total):
 
 @generic
 def asks(energy):
-    """Whether anybody needs the energy (a literal)."""
+    """Whether a rule or thermostat needs the energy (a literal)."""
 
 
 @generic
 def many_energy_term(energy, m_v_squared):
-    """What several particles of this sum of m v^2 add to a column of their own, or ()."""
+    """The term of several particles with this sum of m v^2 in a column of its own, or ()."""
 
 
 @generic
 def many_tally(energy, number, m_v_squared):
-    """What so many particles add to the integer that counts."""
+    """The term of so many particles in the integer that counts."""
 
 
 @energy_term.register(NotAsked, WithCount)

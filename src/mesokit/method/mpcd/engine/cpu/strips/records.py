@@ -89,7 +89,9 @@ def scatter_add(
         columns = [columns.pop() if len(tallied) else ones, *columns]
         columns += [ir.Constant(ir.VectorType(_I64, QUAD), [0] * QUAD)] * (length - count - 1)
         parts = [_turned(builder, columns[k : k + QUAD]) for k in range(0, length, QUAD)]
-        for j in range(QUAD):  # lanes in turn, for two may be in one cell
+        # This loop runs when the kernel is compiled and writes the code of four lanes. They come in
+        # turn, load, add, store: two lanes may be in one cell, and the second must see the first.
+        for j in range(QUAD):
             for p, part in enumerate(parts):
                 place = _plus(builder, starts[j], p * QUAD)
                 before = _load(builder, target, place, QUAD)
@@ -130,7 +132,7 @@ def _start(context: Any, builder: Any, signature: Any, arguments: Any, k: int) -
 
 
 def _starts(builder: Any, cells: Any, lane: Any, length: int) -> list[Any]:
-    """Where the records of the cells of four lanes start."""
+    """The first elements of the records of the cells of four lanes."""
     places = (gep(builder, cells, _plus(builder, lane, j), inbounds=True) for j in range(QUAD))
     numbers = (builder.zext(builder.load(place), _I64) for place in places)
     return [builder.mul(number, ir.Constant(_I64, length)) for number in numbers]

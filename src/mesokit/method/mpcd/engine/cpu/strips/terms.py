@@ -1,4 +1,4 @@
-"""What cells add up over their particles: their number, and fixed-point numbers."""
+"""The sums of cells over their particles: their number, and fixed-point numbers."""
 
 # ruff: noqa: F401  lines written out as text use what is imported here
 
@@ -22,7 +22,7 @@ def nothing_found(terms):
 
 @scalar
 def sums_of_cell(sums, cell, terms):
-    """What the particles of all threads add up to in a cell: their number, and the terms."""
+    """The sums of a cell over all threads: the number of particles, and the terms."""
     found, start = nothing_found(terms), np.uint64(cell) * np.uint64(sums_length(len(terms)))
     for t in range(sums.shape[0]):
         found = added(found, load_values(sums[t], start, found))
@@ -31,7 +31,7 @@ def sums_of_cell(sums, cell, terms):
 
 @scalar
 def number_in_cell(physics, sums, cell):
-    """How many particles all threads have found in a cell."""
+    """The number of particles in a cell, over all threads."""
     number, start = np.int64(0), cell * sums_length(len(physics.terms))
     for t in range(sums.shape[0]):
         number += untangled(physics.energy, sums[t, start])[0]
@@ -40,7 +40,7 @@ def number_in_cell(physics, sums, cell):
 
 @scalar
 def terms_of(physics, m, v, own):
-    """What a particle adds to the sums of its cell; `own` is for those of the collision rule."""
+    """The terms of a particle in the sums of its cell; `own` are those of the collision rule."""
     terms = scaled(m, v) + _mass_term(physics.masses, m) + energy_term(physics.energy, m, v) + own
     return rounded(terms, physics.scales)
 

@@ -1,8 +1,8 @@
-"""Beads of solutes on ranks: whose they are, and which others each must hear of.
+"""Beads of solutes on ranks: the owner of each bead, and the copies in the halos of other ranks.
 
-A bead is moved by the rank in whose block it is when a step begins. Ranks whose blocks are near
-hear where it is at every sub-step, since their beads may feel it. Arrays of beads are as long on
-every rank; only places of beads around its block are kept up to date there.
+The owner of a bead is the rank in whose block it is when a step begins; it moves the bead. Ranks
+whose blocks are near receive its place at every sub-step, since it acts on their beads. Arrays of
+beads have the same length on every rank; only own beads and copies are up to date there.
 """
 
 from typing import Any, NamedTuple
@@ -36,16 +36,19 @@ NUMBERS, PLACES = 5, 6  # tags of messages
 
 
 class Halo(NamedTuple):
-    """Which rank has which bead; q partners, B beads.
+    """Own beads of a rank, and copies of beads near its block; q partners, B beads.
 
-    ranks (q,): the partners. count (3,), numbers (3, B): of own beads, of these and those
-    received from partners, of those in own cells, whichever rank moves them; see `state.OWN`.
-    seen (B,): step at which each was last around; began (B * d,): where own beads were when it did.
-    reach: how far from a block beads matter there; most: square of the longest path in a step.
-    told, heard (q,), tell, hear (q, B): which beads the partners are told of, and tell of.
-    asked (q,), ask, cell (q, B): own beads in cells of partners, and their cells there.
+    ranks (q,): the partners. count (3,), numbers (3, B): ids of own beads, of own beads and copies,
+    and of beads in own cells, whichever rank moves them; see `state.OWN`.
+    seen (B,): last step in which each was an own bead or a copy; began (B * d,): places of own
+    beads at the start of the step.
+    reach: distance from a block within which beads act on those in it; most: square of the longest
+    path in a step.
+    copies_out, copies_in (q,), ids_out, ids_in (q, B): copies sent to each partner and received.
+    remote (q,), remote_ids, remote_cells (q, B): own beads in cells of partners, and the numbers of
+    these cells there.
     out, into (q, 1 + B, 1 + 2 d); terms_out, terms_in (q, 1 + B, 2 + terms): messages.
-    slot: where the answers for those in cells of others begin.
+    slot: first record of coefficients of own beads in cells of partners.
     """
 
     post: Post
@@ -56,13 +59,13 @@ class Halo(NamedTuple):
     began: Any
     reach: float
     most: float
-    told: Any
-    heard: Any
-    tell: Any
-    hear: Any
-    asked: Any
-    ask: Any
-    cell: Any
+    copies_out: Any
+    copies_in: Any
+    ids_out: Any
+    ids_in: Any
+    remote: Any
+    remote_ids: Any
+    remote_cells: Any
     out: Any
     into: Any
     terms_out: Any
@@ -74,29 +77,29 @@ class Halo(NamedTuple):
 
 @by_type
 def assign_beads(worker, now, physics, box, fluid, beads):
-    """At the begin of a step: beads go to whose block they are in, and all hear of those near."""
+    """At the start of a step: migrate beads to their owners, and exchange copies near blocks."""
     if len(beads.types[beads.fields.index("halo")]) == 0:
         return lambda worker, now, physics, box, fluid, beads: None
-    return lambda worker, now, physics, box, fluid, beads: _call(
+    return lambda worker, now, physics, box, fluid, beads: _assign_beads(
         worker, now, physics, box, fluid, beads
     )
 
 
 @stage
-def _call(worker, now, physics, box, fluid, beads):
+def _assign_beads(worker, now, physics, box, fluid, beads):
     barrier(worker)
     if worker.thread == 0:
-        changed = hand_over(now, physics, box, fluid.cells.shared, beads)
-        changed |= hear_of_others(now, physics, box, fluid.cells.shared, beads)
+        changed = migrate_beads(now, physics, box, fluid.cells.shared, beads)
+        changed |= exchange_copies(now, physics, box, fluid.cells.shared, beads)
         if changed:
             forget_lists(beads.neighbours)
-        require_partners(now, fluid.cells.shared, beads)
+        check_copies(now, fluid.cells.shared, beads)
     barrier(worker)
 
 
 @by_type
 def forget_lists(neighbours):
-    """Lists of neighbours are made anew: there are others around."""
+    """Mark neighbour lists as outdated: other beads are around the block now."""
     return _forget if len(neighbours) else lambda neighbours: None
 
 
@@ -107,13 +110,15 @@ def _forget(neighbours):
 
 
 @scalar
-def hand_over(now, physics, box, shared, beads):
-    """Beads in blocks of others go there; whether any came or went."""
+def migrate_beads(now, physics, box, shared, beads):
+    """Migrate beads to the ranks in whose blocks they are; true if any came or went."""
     halo, zero, kept = beads.halo, physics.zero, 0
     grid = moved_grid(now.grid, scaled(0.0, zero), shared.closed)
     for p in range(len(halo.ranks)):
         halo.out[p, 0, 0] = 0.0
     number = halo.count[OWN]
+    # Sort own beads into those that stay and those for partners, by cells without a shift: all
+    # ranks find the same owner. Beads that stay move up in the list, so ids remain in order.
     for n in range(number):
         i = halo.numbers[OWN, n]
         r, _, _ = fold(
@@ -127,13 +132,16 @@ def hand_over(now, physics, box, shared, beads):
             append(halo.out, owner, i, load_place(beads, i, zero), load_velocity(beads, i, zero))
     gone = number - kept
     exchange_bead_rows(halo, shared, NUMBERS)
+    # Beads that arrive are inserted by id. The order of own beads is then the same whichever
+    # partner sent them.
     for p in range(len(halo.ranks)):
         for row in range(1, 1 + int(halo.into[p, 0, 0])):
-            i = take_place(halo.into, p, row, beads, zero)
-            put_velocity(halo.into, p, row, beads, i, zero)
+            i = read_place(halo.into, p, row, beads, zero)
+            read_velocity(halo.into, p, row, beads, i, zero)
             kept = insert(halo.numbers, OWN, kept, i)
             gone += 1
     halo.count[OWN] = kept
+    # Places at t, from which `find_bead_owners` measures the path of the step.
     for n in range(kept):
         i = halo.numbers[OWN, n]
         store_values(halo.began, np.uint64(i * len(zero)), load_place(beads, i, zero))
@@ -142,20 +150,20 @@ def hand_over(now, physics, box, shared, beads):
 
 @scalar
 def zero_of(pattern):
-    """The zero vector."""
+    """A vector of zeros."""
     return scaled(0.0, pattern)
 
 
 @scalar
 def owner_or_own(shared, place):
-    """The partner whose cell that is; NOBODY if it is this rank's own, or nobody's in reach."""
+    """The partner that owns a cell; NO_OWNER if this rank owns it, or no partner does."""
     owner, _ = owner_of(shared, place)
     return NO_OWNER if in_block(shared.limits, place) else owner
 
 
 @scalar
 def insert(numbers, which, number, i):
-    """Put a number into an ordered list; how many there are then."""
+    """Put an id into an ordered list; returns the length of the list."""
     place = number
     while place > 0 and numbers[which, place - 1] > i:
         numbers[which, place] = numbers[which, place - 1]
@@ -166,7 +174,7 @@ def insert(numbers, which, number, i):
 
 @scalar
 def append(out, p, i, r, v):
-    """Add a row to the message to a partner."""
+    """Add id, place and velocity of a bead to the message to a partner."""
     row, d = 1 + int(out[p, 0, 0]), len(r)
     out[p, row, 0] = float(i)
     for k in range(d):
@@ -175,8 +183,8 @@ def append(out, p, i, r, v):
 
 
 @scalar
-def take_place(rows, p, row, beads, zero):
-    """Put a bead where a message says; its number."""
+def read_place(rows, p, row, beads, zero):
+    """Set the place of a bead from a row of a message; returns its id."""
     i = int(rows[p, row, 0])
     for k in range(len(zero)):
         beads.r[i * len(zero) + k] = rows[p, row, 1 + k]
@@ -184,8 +192,8 @@ def take_place(rows, p, row, beads, zero):
 
 
 @scalar
-def put_velocity(rows, p, row, beads, i, zero):
-    """The same for its velocity."""
+def read_velocity(rows, p, row, beads, i, zero):
+    """Set the velocity of bead i from a row of a message."""
     d = len(zero)
     for k in range(d):
         beads.v[i * d + k] = rows[p, row, 1 + d + k]
@@ -193,7 +201,7 @@ def put_velocity(rows, p, row, beads, i, zero):
 
 @scalar
 def exchange_bead_rows(halo, shared, tag):
-    """Messages of whole rows to all partners, and from them."""
+    """Send whole rows to all partners, and receive theirs."""
     post, n, words = halo.post, 0, halo.out.shape[2]
     most = halo.out.shape[1] * words
     size = np.uint64(8 * most)
@@ -210,12 +218,14 @@ def exchange_bead_rows(halo, shared, tag):
 
 
 @scalar
-def hear_of_others(now, physics, box, shared, beads):
-    """Tell all of beads near their blocks, hear of theirs; whether somebody is new here."""
+def exchange_copies(now, physics, box, shared, beads):
+    """Exchange copies of beads near blocks; true if a copy is here that was not one step before."""
     halo, zero, step = beads.halo, physics.zero, np.int64(now.counter.step)
     number, new = halo.count[OWN], False
     for p in range(len(halo.ranks)):
-        halo.out[p, 0, 0], halo.told[p] = 0.0, 0
+        halo.out[p, 0, 0], halo.copies_out[p] = 0.0, 0
+    # A bead may be near several partners. Its place is sent in its own image, so bonds remain plain
+    # differences there. `ids_out` keeps the order of the rows for the places of all sub-steps.
     for n in range(number):
         i = halo.numbers[OWN, n]
         halo.numbers[AROUND, n] = i
@@ -224,15 +234,17 @@ def hear_of_others(now, physics, box, shared, beads):
         for p in range(len(halo.ranks)):
             if near_block(halo, shared, p, r):
                 append(halo.out, p, i, mine, v)
-                halo.tell[p, halo.told[p]] = i
-                halo.told[p] += 1
+                halo.ids_out[p, halo.copies_out[p]] = i
+                halo.copies_out[p] += 1
         halo.seen[i] = step
     exchange_bead_rows(halo, shared, NUMBERS)
+    # Copies follow own beads in the list. A bead that was not here in the last step is on no
+    # neighbour list yet, so lists must be made anew.
     for p in range(len(halo.ranks)):
-        halo.heard[p] = int(halo.into[p, 0, 0])
-        for row in range(1, 1 + halo.heard[p]):
-            i = take_place(halo.into, p, row, beads, zero)
-            halo.hear[p, row - 1] = i
+        halo.copies_in[p] = int(halo.into[p, 0, 0])
+        for row in range(1, 1 + halo.copies_in[p]):
+            i = read_place(halo.into, p, row, beads, zero)
+            halo.ids_in[p, row - 1] = i
             halo.numbers[AROUND, number] = i
             new |= halo.seen[i] != step - 1
             halo.seen[i] = step
@@ -243,10 +255,13 @@ def hear_of_others(now, physics, box, shared, beads):
 
 @scalar
 def near_block(halo, shared, p, r):
-    """Whether a place in the box is so near to the block of a partner that beads there matter."""
+    """Whether a bead at a place in the box acts on beads in the block of a partner."""
     near, across = True, False
+    # A bead is near if its distance from the block is within reach along every axis, directly or
+    # across an end of the box. The order is z, y, x: images beyond an end along y may have any x
+    # under shear, so x does not count then.
     for j in range(len(r)):
-        k = len(r) - 1 - j  # z, y, x: images beyond an end along y may have any x
+        k = len(r) - 1 - j
         low, high = float(shared.blocks[p, 0, k]), float(shared.blocks[p, 1, k])
         whole = float(shared.cells[k])
         away = max(low - r[k], r[k] - high, 0.0)
@@ -261,9 +276,11 @@ def near_block(halo, shared, p, r):
 
 
 @scalar
-def require_partners(now, shared, beads):
-    """Note a fault if a bead is bonded to one that nobody told of."""
+def check_copies(now, shared, beads):
+    """Note a fault if an own bead has a bond or an angle with a bead that has no copy here."""
     halo, step = beads.halo, np.int64(now.counter.step)
+    # Copies reach as far as nearly all bonds are long. A longer bond would act on an old place, so
+    # the run stops instead.
     for n in range(halo.count[OWN]):
         i = halo.numbers[OWN, n]
         for m in range(beads.bond_starts[i], beads.bond_starts[i + 1]):
@@ -276,35 +293,38 @@ def require_partners(now, shared, beads):
 
 
 @by_type
-def tell_places(worker, beads):
-    """Where beads are now, to all that must know."""
+def update_copies(worker, beads):
+    """Send places of own beads to the ranks that keep copies, and receive those of copies."""
     if len(beads.types[beads.fields.index("halo")]) == 0:
         return lambda worker, beads: None
-    return lambda worker, beads: _tell(worker, beads)
+    return lambda worker, beads: _update_copies(worker, beads)
 
 
 @stage
-def _tell(worker, beads):
+def _update_copies(worker, beads):
     if worker.thread == 0:
         halo = beads.halo
         post, n, d = halo.post, 0, len(beads.r) // len(beads.cell)
         size = np.uint64(8 * halo.out.shape[1] * halo.out.shape[2])
+        # The lists of copies are fixed for the step, so messages have places only, without ids.
+        # Receives are posted before sends. The floats are sent unchanged: forces on own beads
+        # have the same bits as on one rank.
         for p in range(len(halo.ranks)):
-            if halo.heard[p] > 0:
+            if halo.copies_in[p] > 0:
                 at = np.uint64(halo.into.ctypes.data) + np.uint64(p) * size
-                n = receive(post, n, at, halo.heard[p] * d, halo.ranks[p], PLACES)
+                n = receive(post, n, at, halo.copies_in[p] * d, halo.ranks[p], PLACES)
         for p in range(len(halo.ranks)):
-            if halo.told[p] > 0:
+            if halo.copies_out[p] > 0:
                 rows = halo.out[p].reshape(-1)
-                for j in range(halo.told[p]):
+                for j in range(halo.copies_out[p]):
                     for k in range(d):
-                        rows[j * d + k] = beads.r[halo.tell[p, j] * d + k]
+                        rows[j * d + k] = beads.r[halo.ids_out[p, j] * d + k]
                 at = np.uint64(halo.out.ctypes.data) + np.uint64(p) * size
-                n = send(post, n, at, halo.told[p] * d, halo.ranks[p], PLACES)
+                n = send(post, n, at, halo.copies_out[p] * d, halo.ranks[p], PLACES)
         finish(post, n)
         for p in range(len(halo.ranks)):
             rows = halo.into[p].reshape(-1)
-            for j in range(halo.heard[p]):
+            for j in range(halo.copies_in[p]):
                 for k in range(d):
-                    beads.r[halo.hear[p, j] * d + k] = rows[j * d + k]
+                    beads.r[halo.ids_in[p, j] * d + k] = rows[j * d + k]
     barrier(worker)

@@ -1,4 +1,4 @@
-"""The memory of a halo of beads, and how far beads of solutes matter beyond a block."""
+"""The memory of a halo of beads, and the reach of solutes beyond a block."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ LEAST = 0.5  # cells that a bead may always go in a step
 
 
 def path_in_a_step(numbers: Numbers, given: Solutes) -> float:
-    """How far a bead goes in a timestep at most."""
+    """The longest path of a bead in a timestep."""
     fluid = numbers.case.fluid
     lightest = min(given.mass_of(kind) for kind in range(len(given.polymers)))
     return max(FAST * math.sqrt(fluid.kT / lightest) * fluid.timestep, LEAST)
 
 
 def reach_of_beads(numbers: Numbers, given: Solutes) -> float:
-    """How far from a block beads matter to those in it."""
+    """The distance from a block within which beads act on those in it."""
     reach = max((pair.reach + given.skin for pair in given.different_pairs), default=0.0)
     for kind in range(len(given.polymers)):
         molecule = given.molecule(kind)
@@ -42,7 +42,7 @@ def reach_of_beads(numbers: Numbers, given: Solutes) -> float:
 
 
 def halo_of(domain: Any, given: Solutes, terms: int) -> Halo:
-    """Nobody's beads yet, and room for all; `domain` is the rank's `Domain`."""
+    """A halo without beads, with room for all; `domain` is the `Domain` of the rank."""
     numbers, q, beads = domain.numbers, max(len(domain.partners), 1), given.beads
     d = numbers.dimension
 
@@ -58,13 +58,13 @@ def halo_of(domain: Any, given: Solutes, terms: int) -> Halo:
         began=np.zeros(beads * d),
         reach=reach_of_beads(numbers, given),
         most=path_in_a_step(numbers, given) ** 2,
-        told=whole(q),
-        heard=whole(q),
-        tell=whole(q, beads),
-        hear=whole(q, beads),
-        asked=whole(q),
-        ask=whole(q, beads),
-        cell=whole(q, beads),
+        copies_out=whole(q),
+        copies_in=whole(q),
+        ids_out=whole(q, beads),
+        ids_in=whole(q, beads),
+        remote=whole(q),
+        remote_ids=whole(q, beads),
+        remote_cells=whole(q, beads),
         out=np.zeros((q, 1 + beads, 1 + 2 * d)),
         into=np.zeros((q, 1 + beads, 1 + 2 * d)),
         terms_out=np.zeros((q, 1 + beads, 2 + terms)),

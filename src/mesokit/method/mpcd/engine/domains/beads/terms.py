@@ -1,4 +1,8 @@
-"""What beads of solutes add to cells of other ranks, which hear of it and answer."""
+"""Remote beads: own beads in cells of partners.
+
+Their terms are sent to the owner of the cell, which adds them to its sums and returns the
+coefficients of the collision.
+"""
 
 from typing import Any
 
@@ -25,7 +29,7 @@ TERMS = 7  # tag of messages
 
 @by_type
 def find_bead_owners(worker, now, physics, fluid, beads):
-    """Which own beads are in own cells and in those of others: how many ask each partner."""
+    """Find the cells of own beads: those in own cells, and remote beads of each partner."""
     if not has_halo(beads):
         return lambda worker, now, physics, fluid, beads: None
     return _find_owners
@@ -40,7 +44,10 @@ def _find_owners(worker, now, physics, fluid, beads):
     if worker.thread == 0:
         halo, shared, present, zero = beads.halo, fluid.cells.shared, 0, physics.zero
         for p in range(len(halo.ranks)):
-            halo.asked[p] = 0
+            halo.remote[p] = 0
+        # Places are those at t + dt, in the cells of the shifted grid. A remote bead gets a record
+        # of its own behind the cells of the halo, to which its coefficients return. One thread
+        # does all of it: beads are few.
         for n in range(halo.count[OWN]):
             i = halo.numbers[OWN, n]
             moved = added_scaled(
@@ -60,34 +67,35 @@ def _find_owners(worker, now, physics, fluid, beads):
                 if p == NO_OWNER:
                     shared.noted[FAULTS] |= FAR
                 else:
-                    halo.ask[p, halo.asked[p]], halo.cell[p, halo.asked[p]] = i, cell
-                    halo.asked[p] += 1
+                    row = halo.remote[p]
+                    halo.remote_ids[p, row], halo.remote_cells[p, row] = i, cell
+                    halo.remote[p] = row + 1
                     beads.cell[i] = halo.slot + n
         halo.count[PRESENT] = present
 
 
 @by_type
-def beads_that_ask(worker, beads, p):
-    """How many beads of this rank are in cells of a partner; the first thread alone writes them."""
+def remote_beads(worker, beads, p):
+    """Number of remote beads in cells of a partner; only the first thread writes their rows."""
     if not has_halo(beads):
         return lambda worker, beads, p: 0
-    return lambda worker, beads, p: beads.halo.asked[p] if worker.thread == 0 else 0
+    return lambda worker, beads, p: beads.halo.remote[p] if worker.thread == 0 else 0
 
 
 @by_type
 def bead_row(beads, p, j):
-    """The slot and the cell there of the jth of them."""
+    """The record and the cell there of the jth remote bead of a partner."""
     if not has_halo(beads):
         return lambda beads, p, j: (np.int64(0), np.int64(0))
     return lambda beads, p, j: (
-        np.int64(beads.cell[beads.halo.ask[p, j]]),
-        beads.halo.cell[p, j],
+        np.int64(beads.cell[beads.halo.remote_ids[p, j]]),
+        beads.halo.remote_cells[p, j],
     )
 
 
 @by_type
 def send_terms(beads, shared, n):
-    """What beads add to cells of partners, on its way; messages in hand."""
+    """Begin to exchange the terms of remote beads; returns the number of open messages."""
     return _send_terms if has_halo(beads) else lambda beads, shared, n: n
 
 
@@ -99,16 +107,18 @@ def _send_terms(beads, shared, n):
     for p in range(len(halo.ranks)):
         at = np.uint64(halo.terms_in.ctypes.data) + np.uint64(p) * size
         n = receive(shared.post, n, at, most, halo.ranks[p], TERMS)
+    # Floats as they are, with the id and the number of the cell at its owner. The owner adds them
+    # by id, so the sums of a cell have the same bits as on one rank.
     for p in range(len(halo.ranks)):
-        halo.terms_out[p, 0, 0] = float(halo.asked[p])
-        for j in range(halo.asked[p]):
-            i = halo.ask[p, j]
+        halo.terms_out[p, 0, 0] = float(halo.remote[p])
+        for j in range(halo.remote[p]):
+            i = halo.remote_ids[p, j]
             halo.terms_out[p, 1 + j, 0] = float(i)
-            halo.terms_out[p, 1 + j, 1] = float(halo.cell[p, j])
+            halo.terms_out[p, 1 + j, 1] = float(halo.remote_cells[p, j])
             for k in range(terms):
                 halo.terms_out[p, 1 + j, 2 + k] = beads.given[i * terms + k]
         at = np.uint64(halo.terms_out.ctypes.data) + np.uint64(p) * size
-        sent = (1 + halo.asked[p]) * words
+        sent = (1 + halo.remote[p]) * words
         n = send(shared.post, n, at, sent, halo.ranks[p], TERMS)
         shared.meter[MESSAGES] += 1
         shared.meter[BEAD_WORDS] += sent
@@ -117,13 +127,14 @@ def _send_terms(beads, shared, n):
 
 @by_type
 def take_terms(beads):
-    """What beads of others add to cells of this rank."""
+    """Store the terms of remote beads of partners, which lie in own cells."""
     return _take_terms if has_halo(beads) else lambda beads: None
 
 
 def _take_terms(beads):
     halo, terms = beads.halo, len(beads.terms)
     present = halo.count[PRESENT]
+    # Inserted by id: a cell adds up its beads in one order, from whichever rank they come.
     for p in range(len(halo.ranks)):
         for row in range(1, 1 + int(halo.terms_in[p, 0, 0])):
             i = int(halo.terms_in[p, row, 0])
@@ -136,7 +147,7 @@ def _take_terms(beads):
 
 @by_type
 def joint_answer(beads, cell, answer):
-    """The answer for a cell: that of its fluid, or of fluid and beads together."""
+    """The coefficients of a cell: of its fluid, or of fluid and beads together."""
     return _joint if has_halo(beads) else lambda beads, cell, answer: answer
 
 

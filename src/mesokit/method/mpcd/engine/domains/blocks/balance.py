@@ -1,9 +1,9 @@
-"""When and where to the borders between ranks move, so that all have as much to do.
+"""When and where to the borders between ranks move, so that all ranks have the same work.
 
-Each rank times its own work, without waiting. At a sort all know the times of the window before,
-which were sent on their way then: so nobody waits for them. A branch of the tree whose two sides
-differ by more than a limit is cut anew, with all below it. What moves at a high branch is more, and
-so its limit is larger. Source: the tree of cuts of Shojaaee, Shaebani, Brendel, Torok and Wolf, J.
+Each rank times its own work, without waiting. The times of a window are sent at a sort and used at
+the next one, so no rank waits for them. A branch of the tree whose two sides differ by more than a
+limit is cut anew, with all below it. More particles move at a high branch, so its limit is larger.
+Source: the tree of cuts of Shojaaee, Shaebani, Brendel, Torok and Wolf, J.
 Comput. Phys. 231, 612 (2012): sigma_T = sqrt(<T^2> - <T>^2) / <T> of the branches of a node.
 """
 
@@ -20,7 +20,7 @@ from mesokit.method.mpcd.engine.domains.blocks.tree import Block, Node, Tree
 
 HIGHER = 0.5  # of the limit, more for each level above the lowest branches
 PATIENCE = 1  # windows after a move that are not looked at
-LEAST = 0.02  # seconds of work: a shorter window tells nothing
+LEAST = 0.02  # seconds of work: a shorter window is too noisy
 
 
 class Move(NamedTuple):
@@ -32,7 +32,7 @@ class Move(NamedTuple):
 
 
 class Balance:
-    """What the ranks know of each other's work.
+    """Times of the work of all ranks, and the moves of borders.
 
     Parameters
     ----------
@@ -51,14 +51,16 @@ class Balance:
         weakref.finalize(self, finish_agreement, self._pending)
         self._wait = 1  # windows to let pass: the first has the compiling in it
 
-    def tell(self, seconds: float) -> None:
-        """Send what this rank has worked in the window that ends, to all, without waiting."""
+    def send_time(self, seconds: float) -> None:
+        """Begin to send the work of this rank in the last window, in seconds, to all ranks."""
         self._own = np.array([seconds])
         self._pending.append(self.comm.Iallgather(self._own, self._times))
 
-    def heard(self) -> list[NDArray[np.float64]]:
-        """Times (ranks,) of the two windows before, the same on all ranks; nothing if there were
-        none: what is seen twice is no accident."""
+    def received_times(self) -> list[NDArray[np.float64]]:
+        """Times (ranks,) of the last two windows, the same on all ranks; empty if there are none.
+
+        Two windows, because one alone may be an accident.
+        """
         if not finish_agreement(self._pending):
             return []
         if self._wait > 0:
@@ -74,14 +76,14 @@ class Balance:
         return [earlier, times] if len(earlier) else []
 
     def moved(self, step: int, blocks: tuple[Block, ...]) -> None:
-        """Borders have moved: the window in hand tells nothing of the new ones."""
+        """Note that borders have moved: times of the present window are of the old borders."""
         self.moves.append(Move(step, float(self.last), blocks))
         finish_agreement(self._pending)
         self._wait, self._earlier = PATIENCE, np.zeros(0)
 
 
 def finish_agreement(pending: list[Any]) -> bool:
-    """Wait for a message that all ranks have sent, if there is one; also where a run ends."""
+    """Wait for the times of all ranks, if they are on their way; also where a run ends."""
     if not pending:
         return False
     pending.pop().Wait()
@@ -109,6 +111,8 @@ def still_good(tree: Tree, windows: Sequence[NDArray[np.float64]], limit: float)
     """The nodes whose branches differ by less than their limits, and so do those above them."""
     kept: list[tuple[Node, ...]] = []
     bad: list[tuple[int, int]] = []  # ranks of branches that are cut anew
+    # From the root down: below a branch that is cut anew no plane stays, because it would divide
+    # another block. All ranks have the same times, so all keep the same nodes.
     for n, level in enumerate(tree.nodes):
         above = len(tree.nodes) - 1 - n
         stay = []

@@ -1,4 +1,4 @@
-"""The cells that a rank knows: its block and some around it; which of them are whose."""
+"""The cells that a rank holds: its block and the halo around it, and the owners of these."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Numbers = NDArray[np.int64]
 
 
 class Space(NamedTuple):
-    """All cells: their number along each axis, and how they go on beyond the ends.
+    """All cells: their number along each axis, and the images beyond the ends.
 
     wraps: whether the first cell along an axis comes after the last one; slides: whether images
     along y are displaced, so that nothing there has a neighbour that stays.
@@ -26,25 +26,28 @@ class Space(NamedTuple):
     slides: bool
 
     def repeats(self, axis: int) -> bool:
-        """Whether cells beyond an end are known as those at the other one."""
+        """Whether the cells beyond an end are those at the other end."""
         return self.wraps[axis] and not (self.slides and axis == 1)
 
 
 class Region(NamedTuple):
-    """From the first cell along each axis (below 0 across an end of the box), so many."""
+    """First cell along each axis (below 0 across an end of the box), and number of cells held."""
 
     first: Cells
     known: Cells
 
     @property
     def number(self) -> int:
-        """How many cells are known."""
+        """Number of cells held."""
         return math.prod(self.known)
 
 
 def region_of(block: Block, space: Space, halo: int) -> Region:
-    """A block and the cells around it, each of them once."""
+    """A block and its halo, each cell once."""
     first, known = [], []
+    # Axis by axis. A halo continues across an end of the box, unless a wall or sliding images are
+    # there. Where block and halo are as long as the box, the region is the whole axis, so that no
+    # cell is there twice.
     for k, (low, high) in enumerate(zip(*block, strict=True)):
         whole = space.cells[k]
         if low == 0 and high == whole:
@@ -62,7 +65,7 @@ def region_of(block: Block, space: Space, halo: int) -> Region:
 
 
 def _along(region: Region, space: Space, block: Block) -> list[Numbers]:
-    """Along each axis, which of the known cells are in the block."""
+    """Along each axis, the held cells that are in the block."""
     found = []
     for k, (low, high) in enumerate(zip(*block, strict=True)):
         i = (region.first[k] + np.arange(region.known[k])) % space.cells[k]
@@ -83,7 +86,7 @@ def numbered(indices: Sequence[Numbers], lengths: Cells) -> Numbers:
 
 
 def keys(region: Region, space: Space) -> Numbers:
-    """The number in the whole box of every known cell."""
+    """The number of every held cell in the whole box."""
     return numbered(_global(region, space), space.cells)
 
 
@@ -95,12 +98,12 @@ def _global(region: Region, space: Space) -> list[Numbers]:
 
 
 def own(region: Region, space: Space, block: Block) -> Numbers:
-    """Numbers, among the known cells, of those in the block."""
+    """Numbers, among the held cells, of those in the block."""
     return numbered(_along(region, space, block), region.known)
 
 
 def shared(mine: Region, theirs: Region, space: Space, block: Block) -> tuple[Numbers, Numbers]:
-    """The cells of another rank's block that are known here: their numbers here and there."""
+    """The cells of another rank's block in the halo of this one: their numbers here and there."""
     here = _along(mine, space, block)
     places = _global(mine, space)
     there = [(places[k][index] - theirs.first[k]) % space.cells[k] for k, index in enumerate(here)]
@@ -108,7 +111,7 @@ def shared(mine: Region, theirs: Region, space: Space, block: Block) -> tuple[Nu
 
 
 def partners(rank: int, blocks: Sequence[Block], space: Space, reach: int) -> list[int]:
-    """The ranks whose blocks come so near, in cells, to that of a rank; not itself."""
+    """The other ranks whose blocks are within `reach` cells of the block of a rank."""
     return [
         other
         for other, block in enumerate(blocks)

@@ -1,4 +1,4 @@
-"""Which cells are whose: blocks by recursive bisection, so that planes follow the work.
+"""The block of each rank, by recursive bisection, so that planes follow the work.
 
 A node of the tree is a block of cells and the ranks that share it; a plane across its longest side
 gives each half of these ranks its part of the work. Leaves are single ranks. Source: Berger and
@@ -66,7 +66,7 @@ def even(blocks: Sequence[tuple[Block, int]]) -> list[NDArray[np.float64]]:
 def divided(
     cells: Cells, ranks: int, weights: Sequence[float], work: Work = even, kept: Tree | None = None
 ) -> Tree:
-    """The tree of so many ranks.
+    """The tree of blocks for a number of ranks.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def divided(
     weights : sequence of float
         By which lengths are compared: a small one for an axis that is better not cut.
     work : function
-        The work in each layer of some blocks across an axis, asked once for each level.
+        The work in each layer of some blocks across an axis; called once for each level.
     kept : Tree, optional
         Nodes that stay as they are, by level; a node is cut anew if it, or one above it, is not
         among them.
@@ -90,16 +90,18 @@ def divided(
     found: list[tuple[Node, ...]] = []
     blocks: dict[int, Block] = {}
     open_ = [(Block((0,) * len(cells), tuple(cells)), 0, ranks)]
+    # Level by level, because `work` is a reduction over all ranks: one for each level, not for each
+    # node. All ranks receive the same integers, so all have the same tree.
     while open_:
         blocks |= {first: block for block, first, number in open_ if number == 1}
         parts = [part for part in open_ if part[2] > 1]
         stay = {node[:3]: node for node in (kept.nodes[len(found)] if kept and parts else ())}
         axes = [_longest(block, weights) for block, _, _ in parts]
-        asked = [part not in stay for part in parts]
-        loads = iter(work([(p[0], a) for p, a, new in zip(parts, axes, asked, strict=True) if new]))
+        cut = [part not in stay for part in parts]
+        loads = iter(work([(p[0], a) for p, a, new in zip(parts, axes, cut, strict=True) if new]))
         level = tuple(
             _cut(part, axis, next(loads)) if new else stay[part]
-            for part, axis, new in zip(parts, axes, asked, strict=True)
+            for part, axis, new in zip(parts, axes, cut, strict=True)
         )
         if level:
             found.append(level)

@@ -1,4 +1,4 @@
-"""How long a rank has worked since borders were last looked at, and at what."""
+"""The time that a rank has worked since the last check of borders, by kind of work."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from mesokit.scalar.system import TICK
 class Window:
     """Seconds of the first thread: `work` in all, of which for `cells`, `beads` and `particles`.
 
-    Work is time that the thread has had a core and has not waited for messages, so that other
-    programs on the machine do not count.
+    Work is time of the thread on a core without waiting for messages, so other programs on the
+    machine do not count.
     """
 
     def __init__(self) -> None:
@@ -23,12 +23,12 @@ class Window:
 
     @property
     def particles(self) -> float:
-        """What is neither for cells nor for beads."""
+        """Seconds of work that is neither for cells nor for beads."""
         return max(self.work - self.cells - self.beads, 0.0)
 
     @contextlib.contextmanager
     def timing(self, engine: Any) -> Iterator[None]:
-        """Count what is done now."""
+        """Count the work that is done in this context."""
         clock, waits = engine.threads.clock, waiting(engine.memory)
         stages, waited = clock[FIRST:].copy(), [int(post[2]) for post in waits]
         began = time.thread_time()
@@ -44,6 +44,6 @@ class Window:
 
 
 def waiting(memory: Any) -> list[Any]:
-    """Where the ticks of waiting are counted: for cells, and for beads."""
+    """The counters of ticks of waiting: for cells, and for beads."""
     found = [memory.fluid.cells.shared.post.waited]
     return found + ([memory.solutes.halo.post.waited] if memory.solutes else [])

@@ -1,4 +1,4 @@
-"""Cells at the borders, for rules that ask for the gradient of a sum."""
+"""Sums of cells at the borders, for rules that need the gradient of a sum."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ FIELDS = 3  # tag of messages
 
 @by_type
 def share_field(worker, fluid):
-    """The sums of cells at the borders, of which neighbours there take the gradient."""
+    """Exchange the sums of cells at the borders, which gradients in neighbouring cells need."""
     if not shares(fluid):
         return lambda worker, fluid: None
     return lambda worker, fluid: _share_field(worker, fluid)

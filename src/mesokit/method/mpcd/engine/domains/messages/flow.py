@@ -1,7 +1,7 @@
-"""What ranks tell one another of the flow near surfaces (see `virtual.gradient`).
+"""Messages about the flow near surfaces (see `virtual.gradient`).
 
-Only the rank whose cell a probe is in knows all of its particles; all ranks that have cells at that
-piece of surface hear of it, and take it into their means in the same way.
+Only the owner of the cell of a probe has the sums of all its particles. It sends the velocity to
+all ranks with that piece of surface, and all update their running means in the same way.
 """
 
 import numpy as np
@@ -14,27 +14,29 @@ from mesokit.scalar.jit import by_type, elementwise, for_each
 
 @elementwise
 def seen_at(values, e, p, pattern):
-    """What was seen at a probe, as a tuple as long as `pattern`."""
+    """The values of a probe, as a tuple as long as `pattern`."""
     return "values[e, p, {k}]"
 
 
 @for_each
 def put_seen(values, e, p, given):
-    """Write down what was seen."""
+    """Store the values of a probe."""
     return "values[e, p, {k}] = given[{k}]"
 
 
 @by_type
 def write_seen(walls, now, physics, shared, partner, row):
-    """Rows for a partner of what was seen at this step of the pieces that it keeps: how many."""
+    """Write rows of this step's probes at pieces that a partner keeps; returns their number."""
     if len(field_of(walls, "gradient")) == 0:
         return lambda walls, now, physics, shared, partner, row: 0
     return _write
 
 
 def _write(walls, now, physics, shared, partner, row):
-    seen, rows, first = walls.virtual.seen, shared.answers_out, row
+    seen, rows, first = walls.virtual.seen, shared.coefficients_out, row
     pattern = physics.zero + (0.0,)
+    # Rows are in the order of pieces and probes, behind the coefficients. Only probes of this step
+    # count: an older value was sent before.
     for j in range(seen.given_starts[partner], seen.given_starts[partner + 1]):
         e = seen.given[j]
         for p in range(PROBES):
@@ -52,15 +54,16 @@ def _write(walls, now, physics, shared, partner, row):
 
 @by_type
 def take_seen(walls, now, physics, shared):
-    """All that was seen at this step goes into the means."""
+    """Update the running means by the probes of this step, own and received."""
     if len(field_of(walls, "gradient")) == 0:
         return lambda walls, now, physics, shared: None
     return _take
 
 
 def _take(walls, now, physics, shared):
-    seen, virtual, rows = walls.virtual.seen, walls.virtual, shared.answers_in
+    seen, virtual, rows = walls.virtual.seen, walls.virtual, shared.coefficients_in
     d = len(physics.zero)
+    # Each probe has one owner, so rows of several partners never meet in one place.
     for partner in range(len(shared.ranks)):
         first = shared.out_at[partner]
         asked = shared.sent[partner]
@@ -70,6 +73,8 @@ def _take(walls, now, physics, shared):
             seen.step[e, p] = np.int64(now.counter.step)
             for k in range(d + 1):
                 seen.values[e, p, k] = rows[row, 2 + k]
+    # The means are updated only when all probes are here, piece by piece. Every rank with a piece
+    # does the same operations on the same numbers.
     for j in range(len(seen.here)):
         e, new = seen.here[j], False
         for p in range(PROBES):

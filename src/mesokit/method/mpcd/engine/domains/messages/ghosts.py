@@ -1,7 +1,8 @@
-"""Particles in cells that this rank does not know: it notes what they add, and asks for their cell.
+"""Ghosts: particles of this rank in cells beyond its halo.
 
-They are few: those that went far since they were last given away, beads of long molecules, and
-those that cross an end of the box whose images slide.
+Their terms are noted one by one and sent to the owners of their cells. They are few: fast particles
+since the last migration, beads of long molecules, and particles that cross an end of the box whose
+images slide.
 """
 
 import numpy as np
@@ -17,7 +18,7 @@ NO_OWNER = -1
 
 @by_type
 def note_ghosts(worker, s, fluid, cell, terms_rows, lanes, terms, tallied):
-    """Note the particles of strip s, which has just been added up, whose cells are not known."""
+    """Note the ghosts of strip s, whose terms have just been added to the sums."""
     if not shares(fluid):
         return lambda worker, s, fluid, cell, terms_rows, lanes, terms, tallied: None
     return _note
@@ -26,6 +27,8 @@ def note_ghosts(worker, s, fluid, cell, terms_rows, lanes, terms, tallied):
 def _note(worker, s, fluid, cell, terms_rows, lanes, terms, tallied):
     cells = fluid.cells
     width = cells.shared.ghost_terms.shape[2]
+    # Ghosts have the spare cell behind all held cells, which collects their terms. Its count is 0
+    # for nearly all strips, so that the loop over lanes is seldom needed.
     sums, spare = cells.sums[worker.thread], np.uint64(cells.number) * np.uint64(width)
     if sums[spare] != 0:
         _note_lanes(worker, s, cells, cell, terms_rows, lanes, terms, tallied)
@@ -53,7 +56,9 @@ def _note_lanes(worker, s, cells, cell, terms_rows, lanes, terms, tallied):
 
 @scalar
 def owner_of(shared, place):
-    """The partner whose cell that is, and its number there; NOBODY if it is no partner's."""
+    """The partner that owns a cell, and its number there; NO_OWNER if no partner owns it."""
+    # Blocks do not overlap, so the first partner that has the cell is its owner. Its region may
+    # begin below 0, across an end of the box; numbers there count from the first cell of it.
     for p in range(shared.blocks.shape[0]):
         inside, number, stride = True, np.int64(0), np.int64(1)
         for k in range(len(place)):
@@ -70,7 +75,7 @@ def owner_of(shared, place):
 
 @scalar
 def find_owners(worker, now, physics, fluid):
-    """Whose cells the ghosts of this thread are in."""
+    """Find the owners of the cells of this thread's ghosts."""
     shared, particles, t = fluid.cells.shared, fluid.particles, worker.thread
     for n in range(shared.ghosts[t, 0]):
         place = shared.ghost_place[t, n]

@@ -1,9 +1,9 @@
-"""Particles move to the rank whose cells they have come to, every so many steps.
+"""Migration: particles move to the owners of the cells that they are in, every so many steps.
 
-They travel after the cells have been settled and before anybody has collided: with what their own
-cell has for them. So no sum changes, and nothing is computed twice. In between they stay where they
-are, and the cells around a block are those that they may stray to. Molecules move as a whole, with
-their first bead.
+They migrate after the coefficients of all cells are known and before the collision, together with
+the coefficients of their cell. So no sum changes, and nothing is computed twice. Between two
+migrations they stay with their rank, in its block or halo. Molecules migrate as a whole, with their
+first bead.
 """
 
 import numpy as np
@@ -45,7 +45,7 @@ PARTICLES = 4  # tag of messages
 
 @by_type
 def migrate(worker, now, physics, fluid):
-    """Those that strayed go to others, if it is time; whether there still are the same."""
+    """Migrate particles, if it is due; true if there was no migration in this step."""
     if not shares(fluid):
         return lambda worker, now, physics, fluid: True
     return lambda worker, now, physics, fluid: _migrate(worker, now, physics, fluid)
@@ -53,7 +53,7 @@ def migrate(worker, now, physics, fluid):
 
 @by_type
 def room_left(fluid):
-    """Whether the arrays can take as many as may come at once."""
+    """Whether the arrays have room for all molecules that can arrive at once."""
     if not shares(fluid):
         return lambda fluid: True
     return _room_left
@@ -66,7 +66,7 @@ def _room_left(fluid):
 
 @by_type
 def note_done(worker, fluid, steps):
-    """Tell how many steps were done: fewer than asked for where there was no room."""
+    """Note how many steps were done: fewer than requested if there was no room."""
     if not shares(fluid):
         return lambda worker, fluid, steps: None
     return _note_done
@@ -87,16 +87,20 @@ def _migrate(worker, now, physics, fluid):
         for p in range(len(shared.ranks)):
             shared.moved_out[shared.moved_at[p] + HEADER, 0] = 0
         n = fluid.particles.filling.molecules
-        for t in range(worker.threads - 1, -1, -1):  # the last first: they leave no holes
+        # Lists of threads are in the order of memory. From the highest place down, the last of the
+        # n molecules is never one that still has to leave, so it can fill the gap.
+        for t in range(worker.threads - 1, -1, -1):
             for j in range(shared.left[t, 0] - 1, -1, -1):
-                n = leave(fluid, physics, shared.leaving[t, j], shared.owner[t, j], n)
+                n = pack_molecule(fluid, physics, shared.leaving[t, j], shared.owner[t, j], n)
             shared.left[t, 0] = 0
         exchange_particles(shared)
         shared.noted[ARRIVED] = 0
+        # New molecules are appended. Their order in memory depends on the partners, but no bit
+        # does: random numbers follow from ids, and sums are integers.
         for p in range(len(shared.ranks)):
             begin = shared.moved_at[p] + HEADER + 1
             for row in range(begin, begin + shared.moved_in[begin - 1, 0]):
-                n = arrive(fluid, physics, shared.moved_in[row], n)
+                n = unpack_molecule(fluid, physics, shared.moved_in[row], n)
         shared.noted[MOLECULES] = n
     barrier(worker)
     lap(worker, MOVE)
@@ -104,26 +108,31 @@ def _migrate(worker, now, physics, fluid):
 
 
 @by_type
-def home(box, grid, closed):
-    """The cells by which it is said whose a particle is: those without a shift. Under shear it is
-    the step's, because only in these are particles of the box those of one image."""
+def owner_grid(box, grid, closed):
+    """The cells that decide the owner of a particle: those without a shift.
+
+    Under shear these are the cells of the step: only in them do particles have one image.
+    """
     if box.instance_class in SLIDING:
         return lambda box, grid, closed: grid
     return lambda box, grid, closed: moved_grid(grid, scaled(0.0, grid.shift), closed)
 
 
 @by_type
-def note_strays(worker, now, physics, fluid, strip, s):
-    """Note the leaders in strip s, which is in the cache, that are to go to other ranks now."""
+def note_migrants(worker, now, physics, fluid, strip, s):
+    """Note the first beads in strip s, which is in the cache, that must migrate in this step."""
     if not shares(fluid):
         return lambda worker, now, physics, fluid, strip, s: None
-    return _note_strays
+    return _note_migrants
 
 
-def _note_strays(worker, now, physics, fluid, strip, s):
+def _note_migrants(worker, now, physics, fluid, strip, s):
     shared, away = fluid.cells.shared, np.int64(0)
     if np.int64(now.counter.step) % shared.every == 0:
-        marks, grid = fluid.scratch.marks[worker.thread], home(now.box, now.grid, shared.closed)
+        marks, grid = (
+            fluid.scratch.marks[worker.thread],
+            owner_grid(now.box, now.grid, shared.closed),
+        )
         for i in range(LANES):
             r = load_particle(strip, i, 0, physics.zero)
             marks[i] = is_away(shared.limits, r, grid)
@@ -134,7 +143,7 @@ def _note_strays(worker, now, physics, fluid, strip, s):
 
 @seldom
 def note_leaving(thread, fluid, strip, s, grid, zero):
-    """Note the marked molecules of a strip and whose they are, as many as may go."""
+    """Note the marked molecules of a strip and their owners, as long as there is room."""
     shared, marks, filling = (
         fluid.cells.shared,
         fluid.scratch.marks[thread],
@@ -153,22 +162,25 @@ def note_leaving(thread, fluid, strip, s, grid, zero):
 
 @scalar
 def is_away(limits, r, grid):
-    """1 if the cell at r is not one of this rank's own, whose block has these limits."""
+    """1 if the cell at r lies outside of the block with these limits."""
     return np.int64(not in_block(limits, cell_in_box(r, grid)))
 
 
 @scalar
-def leave(fluid, physics, molecule, p, n):
-    """Write a molecule into the message to a partner; the last of n takes its place."""
+def pack_molecule(fluid, physics, molecule, p, n):
+    """Write a molecule into the message to a partner; the last of n molecules takes its place."""
     shared, particles = fluid.cells.shared, fluid.particles
     first = shared.moved_at[p]
     rows = shared.moved_out[first + HEADER, 0]
     if first + HEADER + 1 + rows >= shared.moved_at[p + 1]:
-        return n  # it goes the next time
+        return n  # no room: it stays until the next migration
     shared.moved_out[first + HEADER, 0] = rows + 1
     out, at = shared.moved_out[first + HEADER + 1 + rows], 0
     numbers, d = len(physics.coefficients), len(physics.zero)
     length = np.uint64(record_length(numbers))
+    # Each bead has its id, the bits of position (t + dt) and velocity (before the collision), and
+    # images. The coefficients of its cell follow: with them the new owner does the pending
+    # collision.
     for bead in range(beads_of(particles.filling)):
         i = place_of_bead(particles.filling, molecule, bead)
         last = place_of_bead(particles.filling, n - 1, bead)
@@ -194,14 +206,14 @@ def leave(fluid, physics, molecule, p, n):
 
 @scalar
 def forget_part(fluid, i):
-    """Others are in this part of a strip now: what is clear around them is found anew."""
+    """Set the clearance of this part of a strip to 0, as other particles are in it now."""
     part = i // FEW
     fluid.room[0, part] = fluid.room[1, part] = 0.0
 
 
 @scalar
 def exchange_particles(shared):
-    """Messages to all partners, and from them."""
+    """Send molecules to all partners, and receive theirs."""
     n = receive_rows(shared, 0, shared.moved_in, shared.moved_at, PARTICLES)
     for p in range(len(shared.ranks)):
         first = shared.moved_at[p]
@@ -212,11 +224,13 @@ def exchange_particles(shared):
 
 
 @scalar
-def arrive(fluid, physics, given, n):
-    """Take over a molecule; what its cells have for it goes into slots of its own."""
+def unpack_molecule(fluid, physics, given, n):
+    """Append a molecule from a message; the coefficients of its cells get records of their own."""
     shared, particles, at = fluid.cells.shared, fluid.particles, 0
     numbers, d = len(physics.coefficients), len(physics.zero)
     length = np.uint64(record_length(numbers))
+    # A bead that arrives may lie in a cell whose record here was not filled. So its coefficients
+    # go to a record behind the cells, for this one collision.
     for bead in range(beads_of(particles.filling)):
         i = place_of_bead(particles.filling, n, bead)
         particles.ident[i] = given[at]
@@ -238,8 +252,8 @@ def arrive(fluid, physics, given, n):
 
 
 @by_type
-def hold_those_here(fluid):
-    """Count the molecules that there are now."""
+def count_molecules(fluid):
+    """Update the number of molecules after a migration."""
     if not shares(fluid):
         return lambda fluid: None
     return lambda fluid: hold(fluid.particles, fluid.cells.shared.noted[MOLECULES])

@@ -1,7 +1,7 @@
-"""MPI in compiled code: what a step needs of the library that mpi4py has loaded.
+"""MPI in compiled code: the functions that a step needs of the library that mpi4py has loaded.
 
-A step of a small fluid lasts less than Python takes to hand over its arrays; so messages are sent
-by the kernel itself. Handles are whole numbers of 32 or 64 bits, as the library has them.
+A step of a small fluid takes less time than Python needs to pass its arrays, so the kernel itself
+sends messages. Handles are whole numbers of 32 or 64 bits, as in the library.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mesokit.processes.cores import usable_cores, which_cores
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.system import nap, read_work_clock, yield_core
 
-SPINS = 1_000  # times that a rank looks for its messages before it lets others have the core
+SPINS = 1_000  # polls for messages before a rank yields its core
 FAILED = 1  # bit of `Post.flag[1]`: a call of the library failed
 
 _WORD, _INT = types.int64, types.int32
@@ -32,12 +32,12 @@ _test = types.ExternalFunction("mesokit_mpi_testall", _INT(_INT, _WORD, _WORD, _
 
 
 class Post(NamedTuple):
-    """Where messages go.
+    """A communicator, and the memory of open messages.
 
     comm, words: handles of the communicator and of the type of 64-bit numbers; requests, statuses:
-    memory of the library, `size` bytes for each request; flag (2,) int32: its answer, and what
-    failed; waited (3,): room for the clock, and ticks spent in waiting; crowded: whether ranks
-    share cores, and so sleep while they wait: a core that is yielded often comes back at once.
+    memory of the library, `size` bytes for each request; flag (2,) int32: result of a test, and
+    faults; waited (3,): memory of the clock, and ticks spent in waiting; crowded: whether ranks
+    share cores and so sleep while they wait: a core that is yielded often comes back at once.
     """
 
     comm: int
@@ -51,7 +51,7 @@ class Post(NamedTuple):
 
 
 def crowded(comm: Any, threads: int) -> bool:
-    """Whether the threads of those ranks that have this one's cores are more than these cores.
+    """Whether ranks on the cores of this one have more threads than there are cores.
 
     All ranks of the communicator call this, each with its threads.
     """
@@ -61,7 +61,7 @@ def crowded(comm: Any, threads: int) -> bool:
 
 
 def post(comm: Any, messages: int, crowded: bool) -> Post:
-    """For so many messages at a time, to ranks of this communicator, which may share cores."""
+    """A `Post` for so many open messages of a communicator; `crowded` if its ranks share cores."""
     from mpi4py import MPI
 
     library = ctypes.CDLL(MPI.__file__)
@@ -83,13 +83,13 @@ def post(comm: Any, messages: int, crowded: bool) -> Post:
 
 @scalar
 def request_of(post, n):
-    """Where the library keeps the nth message in hand."""
+    """Address of the request of the nth open message."""
     return np.int64(post.requests.ctypes.data) + n * post.size
 
 
 @scalar
 def send(post, n, address, words, rank, tag):
-    """Begin to send so many 64-bit numbers from an address to a rank; the nth message in hand."""
+    """Begin to send `words` 64-bit numbers to a rank as the nth open message; returns n + 1."""
     number, to, mark = np.int32(words), np.int32(rank), np.int32(tag)
     failed = _send(np.int64(address), number, post.words, to, mark, post.comm, request_of(post, n))
     post.flag[1] |= failed != 0
@@ -98,7 +98,7 @@ def send(post, n, address, words, rank, tag):
 
 @scalar
 def receive(post, n, address, words, rank, tag):
-    """Be ready for at most so many from a rank."""
+    """Begin to receive at most `words` 64-bit numbers from a rank; returns n + 1."""
     number, by, mark = np.int32(words), np.int32(rank), np.int32(tag)
     failed = _receive(
         np.int64(address), number, post.words, by, mark, post.comm, request_of(post, n)
@@ -109,9 +109,12 @@ def receive(post, n, address, words, rank, tag):
 
 @scalar
 def finish(post, n):
-    """Wait until the n messages in hand have been sent and have come."""
+    """Wait until all n open messages are sent and received."""
     requests, statuses = post.requests.ctypes.data, post.statuses.ctypes.data
     post.flag[0], spins, began = 0, 0, read_work_clock(post.waited)
+    # The wait of most MPI libraries holds the core all the time. Polling lets another rank or
+    # thread on this core go on: after SPINS polls the core is yielded, and crowded ranks sleep
+    # after each poll.
     while post.flag[0] == 0:
         failed = _test(
             np.int32(n), np.int64(requests), np.int64(post.flag.ctypes.data), np.int64(statuses)

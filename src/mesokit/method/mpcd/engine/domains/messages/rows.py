@@ -9,7 +9,7 @@ from mesokit.scalar.jit import scalar
 
 @scalar
 def receive_rows(shared, n, rows, starts, tag):
-    """Be ready for rows of all partners, each in its part of the array; messages in hand."""
+    """Begin to receive rows of all partners, each into its part; returns the number of messages."""
     words = rows.shape[1]
     for p in range(len(shared.ranks)):
         most = (starts[p + 1] - starts[p]) * words
@@ -19,7 +19,7 @@ def receive_rows(shared, n, rows, starts, tag):
 
 @scalar
 def send_rows(shared, n, rows, first, number, p, tag, kind):
-    """Begin to send so many rows, the header first, to a partner; messages in hand.
+    """Begin to send `number` rows, the header first, to a partner; returns the number of messages.
 
     `kind` is the place in `Shared.meter` that counts the words.
     """
@@ -32,5 +32,5 @@ def send_rows(shared, n, rows, first, number, p, tag, kind):
 
 @scalar
 def address_of(rows, first):
-    """Where a row of 64-bit numbers begins in memory."""
+    """Address of a row of 64-bit numbers."""
     return np.uint64(rows.ctypes.data) + np.uint64(8 * first * rows.shape[1])

@@ -1,4 +1,4 @@
-"""What a rank keeps in order to share cells with others, as compiled code takes it."""
+"""The memory with which a rank shares cells with its partners, as compiled code takes it."""
 
 from typing import Any, NamedTuple
 
@@ -6,44 +6,44 @@ from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.domains.messages.mpi import Post
 from mesokit.scalar.jit import by_type
 
-# Places in `Shared.noted`: molecules held, steps done by the last call, faults, newcomers in hand.
+# Places in `Shared.noted`: molecules held, steps done by the last call, faults, particles that
+# arrived in the last migration.
 MOLECULES, DONE, FAULTS, ARRIVED = 0, 1, 2, 3
-# Faults: more ghosts than there is room for; a cell of nobody in reach; a bead that went too far.
+# Faults: more ghosts than there is room for; a cell of no partner; a bead that moved too far.
 FULL, FAR, STRETCHED = 1, 2, 4
 # Places in `Shared.meter`, numbers since the run began: messages, words and rows sent for sums,
-# answers, particles and fields, most ghosts of a thread at once, molecules moved,
+# coefficients, particles and fields, most ghosts of a thread at once, molecules moved,
 # words for beads.
-MESSAGES, SUM_WORDS, ANSWER_WORDS, MOVED_WORDS, FIELD_WORDS, GHOSTS, MOVED, BEAD_WORDS = range(8)
+MESSAGES, SUM_WORDS, RECORD_WORDS, MOVED_WORDS, FIELD_WORDS, GHOSTS, MOVED, BEAD_WORDS = range(8)
 METER_SIZE = 8
-HEADER = 0  # the row in front of a message: how many follow
+HEADER = 0  # the first row of a message: how many rows follow
 
 
 class Shared(NamedTuple):
-    """The cells around a block and the messages about them; q partners, T threads.
+    """The halo of cells around a block, and the messages about it; q partners, T threads.
 
-    A cell of another rank is known by a number of its own here. Rows of sums go to the rank whose
-    cell it is, which answers with what particles need in order to collide. Ghosts are particles in
-    cells that are not known: their rows go to whoever has the cell, their answers into a slot
-    behind all known cells.
+    Cells of the block and of its halo are numbered from 0 ("held cells"). Rows of sums of halo
+    cells go to the owners, which return the coefficients of the collision. Ghosts are particles
+    beyond the halo: their rows go to the owners of their cells, their coefficients return to
+    records behind all held cells.
 
-    keys (known + LANES,): number in the whole box of each known cell. mixed (batches,): whether any
-    cell of a batch is this rank's own.
-    blocks (q, 2, d): of partners; regions (q, 2, d): first and
-    number of the cells that they know. cells (d,): of the box.
-    ranks (q,): their numbers.
-    starts (q + 1,), mine, theirs: cells of each partner that are known here, their numbers here and
-    there; given_starts (q + 1,), given: own cells that each partner knows, in its order.
-    out_at, in_at (q + 1,): where the rows of each partner begin; sums_out, sums_in (rows, 1 +
-    width); answers_out, answers_in (rows, answer); asked (rows,): which cell a row is of.
-    counting (T, q): rows of each thread; sent (q,): of all.
-    field_out, field_in: numbers of cells whose neighbours are asked for, in the order of `given`
-    and of `mine`.
+    keys (held + LANES,): number in the whole box of each held cell. mixed (batches,): whether a
+    batch has any own cell.
+    blocks (q, 2, d): of partners; regions (q, 2, d): first of the cells that they hold, and their
+    number. cells (d,): of the box. ranks (q,): of the partners.
+    starts (q + 1,), mine, theirs: halo cells of each partner, by their numbers here and there;
+    given_starts (q + 1,), given: own cells in the halo of each partner, in its order.
+    out_at, in_at (q + 1,): first rows of each partner; sums_out, sums_in (rows, 1 + width);
+    coefficients_out, coefficients_in (rows, length); records (rows,): held cell, or record behind
+    these, of each row that was sent.
+    counting (T, q): rows of each thread; sent (q,): of all threads.
+    field_out, field_in: sums of cells at the borders for gradients, in the order of `given` and of
+    `mine`.
     ghost_place, ghost_cell, ghost_owner (T, ghosts), ghost_terms (T, ghosts, width), ghosts (T, 8).
-    leaving, owner (T, most), left (T, 8): molecules that go to others, and to whom; moved_at
-    (q + 1,), moved_out, moved_in (rows, record): where those of each partner begin, and their
-    numbers.
-    every: steps from one move to the next; slots: ghosts of all threads; room: molecules that the
-    arrays hold.
+    leaving, owner (T, most), left (T, 8): molecules that migrate, and their new owners; moved_at
+    (q + 1,), moved_out, moved_in (rows, record): first rows of each partner, and the rows.
+    every: steps from one migration to the next; slots: records of the ghosts of all threads;
+    room: molecules that the arrays hold.
     """
 
     post: Post
@@ -64,9 +64,9 @@ class Shared(NamedTuple):
     in_at: Any
     sums_out: Any
     sums_in: Any
-    answers_out: Any
-    answers_in: Any
-    asked: Any
+    coefficients_out: Any
+    coefficients_in: Any
+    records: Any
     counting: Any
     sent: Any
     field_out: Any
@@ -90,13 +90,13 @@ class Shared(NamedTuple):
 
 
 def shares(fluid: Any) -> bool:
-    """Whether a fluid is that of one rank of several, from the numba type of `Fluid`."""
+    """Whether ranks share the fluid, from the numba type of `Fluid`."""
     return len(field_of(field_of(fluid, "cells"), "shared")) > 0
 
 
 @by_type
 def any_own(shared, batch):
-    """Whether a batch of cells has one that is this rank's own."""
+    """Whether a batch of cells has any own cell."""
     if len(shared) == 0:
         return lambda shared, batch: True
     return lambda shared, batch: shared.mixed[batch]
@@ -104,7 +104,7 @@ def any_own(shared, batch):
 
 @by_type
 def key_of(shared, cell):
-    """The number in the whole box of a known cell."""
+    """The number of a held cell in the whole box."""
     if len(shared) == 0:
         return lambda shared, cell: cell
     return lambda shared, cell: shared.keys[cell]

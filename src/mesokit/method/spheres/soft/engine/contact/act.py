@@ -1,9 +1,12 @@
-"""What contacts do to spheres, and what they tell: with spheres, and with walls."""
+"""Forces and readings of contacts, with spheres and with walls."""
 
-from mesokit.method.spheres.soft.engine.acting import act, tell
+from mesokit.method.spheres.soft.engine.acting import act, measure
 from mesokit.method.spheres.soft.engine.contact.force import Contact
-from mesokit.method.spheres.soft.engine.contact.pairs import add_contact_forces, tell_pairs
-from mesokit.method.spheres.soft.engine.contact.walls import contact_forces_from_walls, tell_walls
+from mesokit.method.spheres.soft.engine.contact.pairs import add_contact_forces, measure_pairs
+from mesokit.method.spheres.soft.engine.contact.walls import (
+    contact_forces_from_walls,
+    measure_walls,
+)
 from mesokit.method.spheres.soft.engine.groups import LARGEST
 
 
@@ -15,7 +18,7 @@ def _(law, mine, time, step, world, noted, room):
     noted[LARGEST] = max(noted[LARGEST], largest * law.scale)
 
 
-@tell.register(Contact)
-def _(law, i, time, world, told):
-    tell_pairs(law, i, world, told)
-    tell_walls(law, i, time, world, told)
+@measure.register(Contact)
+def _(law, i, time, world, readings):
+    measure_pairs(law, i, world, readings)
+    measure_walls(law, i, time, world, readings)

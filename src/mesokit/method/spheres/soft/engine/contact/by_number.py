@@ -1,4 +1,4 @@
-"""What contacts of spheres remember, by the numbers of the two, for checkpoints."""
+"""The springs of contacts between spheres, by the ids of the two, for checkpoints."""
 
 from typing import Any
 

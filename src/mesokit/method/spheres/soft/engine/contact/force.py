@@ -22,7 +22,7 @@ DAMPING_RATIO, FRICTION, OWN = 0, 1, 2  # columns of `Walls.own`, and their numb
 
 
 class Contact(NamedTuple):
-    """What happens at a contact.
+    """The law of a contact.
 
     normal: force along the normal; stiffness, damping: of the spring along the surface, over the
     normal stiffness and over sqrt(normal stiffness * mass); friction: Coulomb's coefficient;
@@ -112,7 +112,7 @@ class Meeting(NamedTuple):
 
 @scalar
 def meeting(one, other):
-    """What a contact of two spheres depends on, but for their places."""
+    """All that a contact of two spheres depends on, except their places."""
     return Meeting(
         one.reach,
         other.reach,
@@ -197,7 +197,7 @@ class Answer(NamedTuple):
 
 @scalar
 def answer(law, touch, springs, step, rolls):
-    """What a contact does, and its springs after a step; `rolls`: whether rolling is resisted."""
+    """Force and torque of a contact, and its springs after a step; `rolls`: rolling is resisted."""
     normal_part, stiffness = normal_force(
         law.normal, touch.overlap, touch.closing, touch.reduced, touch.ratio
     )

@@ -1,9 +1,9 @@
 """Contacts of spheres with spheres, in batches.
 
-First who is near enough, without branches; then what they have, side by side; then the forces, in a
-loop over vectors; and the sums. Where both spheres of a pair are one thread's, the force is found
-once, from the one before in memory; else each finds it for itself. Nothing depends on which, and on
-batches neither. Springs are remembered where forces are found.
+First the near pairs are found, without branches; then their properties are copied side by side;
+then forces follow in a loop over vectors, and are added up. If both spheres of a pair belong to one
+thread, the force is computed once, for the sphere before in memory; else each thread computes it.
+The bits depend neither on that nor on batches. Springs are kept where forces are computed.
 """
 
 import numpy as np
@@ -57,9 +57,12 @@ PART = 16  # of a list at a time
 
 @scalar
 def add_contact_forces(law, mine, step, world, room):
-    """Forces and torques of all pairs that this thread finds; a bound of them."""
+    """Add forces and torques of all pairs of this thread; returns a bound of them."""
     lists, largest = world.lists, 0.0
     i, last, begin, next_contact = mine[0], mine[1], 0, lists.begin[mine[0]]
+    # Batches fill the first-level cache: parts of lists are searched until a batch is nearly full,
+    # then its forces are one loop over vectors. Springs of all contacts searched are cleared before
+    # those that still touch are written again.
     while i < last:
         n, first_contact = 0, next_contact
         while i < last and n <= BATCH - PART:
@@ -82,9 +85,11 @@ def add_contact_forces(law, mine, step, world, room):
 
 @scalar
 def find_near(law, i, begin, end, world, room, n):
-    """Add those that sphere i touches, or soon will, in a part of its list; how many there are."""
+    """Add the pairs of sphere i that touch, or soon will, to the batch; returns their number."""
     bodies, box, lists = world.bodies, world.box, world.lists
     r, far, kept_at = row(bodies.place, i), reach(bodies, i), lists.begin[i]
+    # Places at t + dt. Every candidate is written into the next row of the batch, which advances
+    # only if it is near: no branch depends on the distance.
     for s in range(begin, end):
         j = np.uint64(lists.near[i, s])
         separation = from_to(box, bodies.place, j, r)
@@ -100,7 +105,7 @@ def find_near(law, i, begin, end, world, room, n):
 
 @scalar
 def bring(world, room, n):
-    """What the spheres of a batch have, side by side."""
+    """Copy velocities, radii, masses and springs of the pairs of a batch side by side."""
     bodies = world.bodies
     for c in range(np.uint64(n)):
         i, j = room.pairs[FIRST + c], room.pairs[SECOND + c]
@@ -111,8 +116,10 @@ def bring(world, room, n):
 
 @scalar
 def follow(law, step, room, n, rolls):
-    """The forces and torques of a batch; `rolls`: whether rolling is resisted."""
+    """Compute forces and torques of a batch; `rolls`: whether rolling is resisted."""
     numbers = room.numbers
+    # Rows of the batch lie at constant offsets, so this loop becomes one over vectors of contacts.
+    # Forces are rounded to quanta here: the other sphere gets exactly the opposite.
     for c in range(np.uint64((n + GROUP - 1) & -GROUP)):
         met = load_meeting(numbers, c)
         touch = between(law, 0.5 * step, load(numbers, SEPARATION, c, VECTOR), met)
@@ -128,8 +135,10 @@ def follow(law, step, room, n, rolls):
 
 @scalar
 def add_up(law, mine, world, room, n):
-    """Add a batch to the sums of its spheres; a bound of its forces and torques."""
+    """Add a batch to the sums of its spheres; returns a bound of its forces and torques."""
     bodies, largest = world.bodies, 0.0
+    # The second sphere is written only if it belongs to this thread, so threads do not race. Else
+    # its own thread finds the same force with the opposite sign. Quanta add up without an order.
     for c in range(np.uint64(n)):
         i, j = room.pairs[FIRST + c], room.pairs[SECOND + c]
         force = load(room.counts, FORCE, c, COUNT)
@@ -144,8 +153,8 @@ def add_up(law, mine, world, room, n):
 
 
 @scalar
-def tell_pairs(law, i, world, told):
-    """Add what the spheres that sphere i touches tell."""
+def measure_pairs(law, i, world, readings):
+    """Add the contacts of sphere i with spheres to its readings."""
     bodies, box, lists = world.bodies, world.box, world.lists
     r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
     for s in range(lists.count[i]):
@@ -155,6 +164,6 @@ def tell_pairs(law, i, world, told):
         if square < sum_of_radii * sum_of_radii and j != i:
             touch = between(law, 0.0, separation, meeting(one, body(bodies, bodies.velocity, j)))
             energy, force = at_rest(law, touch, kept_between(lists, i, j))
-            told[ENERGY] += quanta(energy, law.scale)
-            told[TOUCHING] += 1
-            add_product(told, law.scale, force, separation)
+            readings[ENERGY] += quanta(energy, law.scale)
+            readings[TOUCHING] += 1
+            add_product(readings, law.scale, force, separation)

@@ -1,4 +1,4 @@
-"""What contacts remember, in memory: rows of no, three or six numbers, one for each contact."""
+"""Springs of contacts in memory: rows of no, three or six numbers, one for each contact."""
 
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import share

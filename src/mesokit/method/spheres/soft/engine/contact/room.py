@@ -59,7 +59,7 @@ def store(numbers, start, c, values):
 
 @scalar
 def load_meeting(numbers, c):
-    """What the two of contact c have."""
+    """Load the properties of the two spheres of contact c."""
     a = load(numbers, MET, c, MEETING)
     foreseen, velocity = (a[3], a[4], a[5]), (a[6], a[7], a[8])
     rolled, turning = (a[9], a[10], a[11]), (a[12], a[13], a[14])
@@ -78,7 +78,7 @@ def store_meeting(numbers, c, met):
 
 @scalar
 def load_springs(numbers, c):
-    """What contact c remembers."""
+    """Load the springs of contact c."""
     a = load(numbers, KEPT, c, SPRINGS)
     return Springs((a[0], a[1], a[2]), (a[3], a[4], a[5]))
 

@@ -2,10 +2,10 @@
 
 from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.geometry.solids.none import Nothing
-from mesokit.method.spheres.soft.engine.acting import ahead, beside, tell_beside
+from mesokit.method.spheres.soft.engine.acting import ahead, beside, measure_beside
 from mesokit.method.spheres.soft.engine.contact.force import at_wall, body, surface
 from mesokit.method.spheres.soft.engine.contact.remembered import kept
-from mesokit.method.spheres.soft.engine.contact.walls import add_force, tell_wall
+from mesokit.method.spheres.soft.engine.contact.walls import add_force, measure_wall
 from mesokit.method.spheres.soft.engine.geometry import reach, row
 from mesokit.method.spheres.soft.engine.groups import Solid
 from mesokit.method.spheres.soft.engine.solid import (
@@ -27,8 +27,8 @@ def _(solid, law, i, step, world, room):
     return 0.0
 
 
-@tell_beside.register(Nothing)
-def _(solid, law, i, world, told):
+@measure_beside.register(Nothing)
+def _(solid, law, i, world, readings):
     return
 
 
@@ -68,11 +68,11 @@ def _(solid, law, i, step, world, room):
     return largest
 
 
-@tell_beside.register(Solid)
-def _(solid, law, i, world, told):
+@measure_beside.register(Solid)
+def _(solid, law, i, world, readings):
     for place in touched(law, solid, world.bodies, i):
         if place.term != NO_TERM and place.distance < reach(world.bodies, i):
             there = surface_at(solid, world.bodies, i, place)
             touch = at_wall(0.0, body(world.bodies, world.bodies.velocity, i), there)
             springs = kept(solid.springs, contact_with(solid, i, place.term))
-            tell_wall(law, touch, springs, told)
+            measure_wall(law, touch, springs, readings)

@@ -19,7 +19,7 @@ class Slider(NamedTuple):
 
 
 class Springs(NamedTuple):
-    """What a contact remembers: how far it slid and how far it rolled, held back by friction."""
+    """The springs of a contact: how far it slid and rolled, held back by friction."""
 
     sliding: tuple[float, float, float]
     rolling: tuple[float, float, float]

@@ -1,6 +1,6 @@
 """Contacts of spheres with walls."""
 
-from mesokit.method.spheres.soft.engine.acting import beside, tell_beside
+from mesokit.method.spheres.soft.engine.acting import beside, measure_beside
 from mesokit.method.spheres.soft.engine.contact.force import (
     answer,
     at_rest,
@@ -20,7 +20,7 @@ from mesokit.scalar.jit import scalar
 
 @scalar
 def contact_forces_from_walls(law, i, time, step, world, room):
-    """Add what walls do to sphere i; a bound of it."""
+    """Add forces and torques of walls on sphere i; returns a bound of them."""
     bodies, box, walls = world.bodies, world.box, world.walls
     r, largest = row(bodies.place, i), 0.0
     for w in range(len(walls.rows)):
@@ -52,8 +52,8 @@ def add_force(law, i, there, springs, c, step, bodies):
 
 
 @scalar
-def tell_walls(law, i, time, world, told):
-    """Add what the walls that sphere i touches tell."""
+def measure_walls(law, i, time, world, readings):
+    """Add the contacts of sphere i with walls to its readings."""
     bodies, box, walls = world.bodies, world.box, world.walls
     r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
     for w in range(len(walls.rows)):
@@ -61,13 +61,13 @@ def tell_walls(law, i, time, world, told):
         if distance < reach(bodies, i):
             there = surface(distance, out, moves, walls.own, w)
             c = i * len(walls.rows) + w
-            tell_wall(law, at_wall(0.0, one, there), kept(walls.springs, c), told)
-    tell_beside(walls.solid, law, i, world, told)
+            measure_wall(law, at_wall(0.0, one, there), kept(walls.springs, c), readings)
+    measure_beside(walls.solid, law, i, world, readings)
 
 
 @scalar
-def tell_wall(law, touch, springs, told):
-    """Add what a contact with a wall tells."""
+def measure_wall(law, touch, springs, readings):
+    """Add a contact with a wall to the readings of a sphere."""
     energy, _ = at_rest(law, touch, springs)
-    told[ENERGY] += quanta(2.0 * energy, law.scale)
-    told[TOUCHING] += 1
+    readings[ENERGY] += quanta(2.0 * energy, law.scale)
+    readings[TOUCHING] += 1
