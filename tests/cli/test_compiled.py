@@ -7,7 +7,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+from mesokit.case.methods import examples, templates
 from mesokit.kernels.kept import shipped_file
+from mesokit.run.warm import STEPS, shortened
 
 CASE = "run = { steps = 1000 }\nbox = { size = [6, 6] }\n"
 
@@ -46,3 +50,9 @@ def test_to_clear_and_to_export_are_two_things(tmp_path: Path) -> None:
     )  # fmt: skip
     assert done.returncode != 0 and "expected one of them" in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", sorted(templates() | examples()))
+def test_each_case_is_shortened_for_it(name: str) -> None:
+    case = shortened(Path(str((templates() | examples())[name])), {})
+    assert case.run.steps == STEPS and case.run.warmup == 0

@@ -25,13 +25,17 @@ class Warmed(NamedTuple):
 def shortened(path: Path, settings: dict[str, str], steps: int = STEPS) -> Case:
     """The case in a file with few steps, in which every observable looks at each fourth.
 
+    Frames that average over a window are of one look.
+
     Raises CaseError.
     """
     plain = Case.from_toml(path, settings)
-    every = {  # where steps are named, these are what is looked at
-        f"observe.{i + 1}.every": EVERY
+    every = {
+        f"observe.{i + 1}.{key}": EVERY
         for i, one in enumerate(plain.observe)
-        if not getattr(one, "steps", ())
+        if not getattr(one, "steps", ())  # where steps are named, these are what is looked at
+        for key in ("every", "window")
+        if getattr(one, key, None)
     }
     return Case.from_toml(path, settings | {"run.steps": steps, "run.warmup": 0} | every)
 
