@@ -11,7 +11,6 @@ import numpy as np
 from common import BLUE, GREEN, GREY, PURPLE, RED, Page, plt
 
 from mesokit import Case, Comparison, theory
-from mesokit.cli.chain_figures import size_with_zeros
 from mesokit.method.mpcd.expected.molecules import without_bonds
 
 COLOURS, MARKS = (BLUE, RED, GREY), ("o", "s", "^")
@@ -19,6 +18,7 @@ LONG_WAVES = ("5.3", "5.4", "5.5", "5.9")  # what the thesis draws in
 SIMPLE = ("figure 5.1", "figure 5.2")
 BEST, BASE = "finite k", "finite k, background of free particles"
 FINE = 400  # points of a line
+FLOOR = 1e-6  # what zero is drawn as: below all that is shown
 DROWNED = 2.0  # standard errors below which theory has drowned in noise
 
 
@@ -162,6 +162,14 @@ def dimer_panels(all_of: dict[str, list[Curve]], case: Case, slowest: float) -> 
         dressed(ax, f"figure {name}", until)
         ax.set(yscale="log", ylim=(6e-3, 1.2), ylabel="$|C(k, t)|/C(k, 0)$")
     return fig
+
+
+def size_with_zeros(time: Any, curve: Any) -> tuple[Any, Any]:
+    """Times and sizes of a curve, with a point at each change of sign: all dips reach the floor."""
+    before = np.flatnonzero(curve[:-1] * curve[1:] < 0)
+    step = (time[before + 1] - time[before]) / (curve[before] - curve[before + 1])
+    time = np.insert(time, before + 1, time[before] + step * curve[before])
+    return time, np.maximum(np.abs(np.insert(curve, before + 1, 0.0)), FLOOR)
 
 
 def theory_panels(measured: dict[str, tuple[Case, float, Curve]]) -> Any:

@@ -92,9 +92,7 @@ ROWS = {
     ),
     "cli/": ("case", "cli", "errors", "io", "processes", "report", "run", "seam", "study"),
     "cli/compiled.py": ("case", "cli", "errors", "kernels", "processes", "run.warm"),
-    "cli/theory.py": ("case", "cli", "errors", "method.mpcd.fluid", "report", "theory"),
-    "cli/chains.py": ("case", "errors", "theory"),
-    "cli/chain_figures.py": ("cli", "errors", "report", "theory"),
+    "cli/theory.py": ("case", "cli", "errors", "method.mpcd", "theory"),
 }  # fmt: skip
 for _place, _row in ROWS.items():  # what is written as scalar functions is compiled
     if "scalar" in _row and "kernels" not in _row:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import io
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.methods import studies, templates
 from mesokit.cli import main
@@ -20,7 +22,8 @@ from mesokit.cli.commands import COMMANDS
 from mesokit.study.study import Study
 
 Captured = pytest.CaptureFixture[str]
-SOURCE = str(Path(__file__).parents[2] / "src")
+ROOT = Path(__file__).parents[2]
+SOURCE = str(ROOT / "src")
 SMALL = """
 [run]
 steps = 20
@@ -218,22 +221,90 @@ def test_commands_on_a_run_need_one(command: str, capsys: Captured) -> None:
         (["--angle-distribution", "uniform"], "--angle-distribution = 'uniform'"),
         (["--rule", "sdr"], "--rule"),
         (["--dimension", "4"], "--dimension"),
-        (["--plot", "a.png"], "--draw velocity-modes: expected --length"),
-        (["--radius", "1"], "--radius: only with --plot"),
-        (["--draw", "bonds"], "--draw: only with --plot"),
-        (["--length", "3", "--draw", "springs", "--plot", "a.png"], "and --bond-length"),
-        (["--length", "3"], "--length: expected --K or --stress-time"),
+        (["--rule", "none"], "no coefficients: there are none without collisions"),
+        (["--set", "fluid.densty=5"], "fluid.densty: unknown key"),
+        (["--length", "3"], "--length, --K, --stress-time: expected a length, and with it one"),
+        (["--length", "3", "--K", "1", "--stress-time", "1"], "with it one of the others"),
+        (["--K", "1"], "expected a length"),
+        (["--length", "2", "--K", "-1"], "'--K': -1"),
         (["--frequency", "1"], "--frequency: only with --length"),
+        (["nowhere.toml"], "nowhere.toml: no such file"),
     ],
 )
 def test_theory_refuses(options: list[str], words: str, capsys: Captured) -> None:
     assert words in refusal(capsys, "theory", *options)
 
 
+@pytest.mark.parametrize(
+    "option", ["plot", "draw", "wave-length", "until", "bond-length", "radius"]
+)
+def test_theory_names_the_script_for_figures(option: str, capsys: Captured) -> None:
+    said = refusal(capsys, "theory", "--length", "3", "--K", "1", f"--{option}", "1")
+    (script,) = re.findall(r"examples/\w+\.py", said)
+    assert f"--{option}: unknown option" in said and (ROOT / script).exists()
+
+
+def test_theory_takes_the_fluid_of_a_case(capsys: Captured) -> None:
+    """Its values, those that options replace, and its chains."""
+    chains = str(ROOT / "examples" / "viscoelastic" / "fig_5_6.toml")
+    assert ends("theory", chains, "--density", "5", "--frequency", "0.1") == 0
+    said = capsys.readouterr().out
+    fluid = [
+        "--density",
+        "5",
+        "--angle",
+        "130.0614",
+        "--thermostat",
+        "maxwell-boltzmann",
+        "--frequency",
+        "0.1",
+    ]
+    assert ends("theory", *fluid, "--length", "10", "--K", "1") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line for line in said.splitlines() if "of a fluid of molecules" not in line] == lines
+    spheres = str(ROOT / "examples" / "hard_disks.toml")
+    assert "hard_disks.toml: run.method = 'event-driven'" in refusal(capsys, "theory", spheres)
+    assert "--dimension: only" in refusal(capsys, "theory", chains, "--dimension", "2")
+    mixture = ["[[fluid.species]]", "density = 5", "mass = 2"]
+    mixture += ["[[fluid.species]]", "density = 5", "mass = 1"]
+    Path("mixture.toml").write_text("\n".join(["run.steps = 1", "box.size = [8, 8]", *mixture]))
+    assert "mixture.toml: fluid.collision.rule = 'srd': no coefficients: no theory of a mix" in (
+        refusal(capsys, "theory", "mixture.toml")
+    )
+
+
+def test_theory_asks_rules_of_ones_own(tmp_path: Path) -> None:
+    """By the name of theory that they have, and by coefficients that they compute."""
+    (tmp_path / "mine.py").write_text(
+        "from typing import Literal\n"
+        "from mesokit.case.component import component, tag\n"
+        "from mesokit.method.mpcd.collision.at import AT\n"
+        "@component\n"
+        "class Named(AT):\n"
+        "    rule: Literal['named'] = tag('named')\n"
+        "    def in_theory(self): return {'rule': 'srd', 'angle': 90.0}\n"
+        "@component\n"
+        "class Computed(Named):\n"
+        "    rule: Literal['computed'] = tag('computed')\n"
+        "    def in_theory(self): return None\n"
+        "    def transport(self, gas): return Named().transport(gas)\n"
+    )
+    (tmp_path / "case.toml").write_text(
+        "run.steps = 1\nbox.size = [8, 8]\nfluid.collision.rule = 'named'\n"
+    )
+    known = theory.transport("srd", 2, 10, 0.1, angle=90)
+    for given, source in (
+        (["case.toml"], "sum of both parts"),
+        (["--rule", "computed", "--dimension", "2"], "of this collision rule"),
+    ):
+        words = [sys.executable, "-m", "mesokit", "--import", "mine", "theory", *given]
+        run = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
+        row = next(line for line in run.stdout.splitlines() if line.startswith("kinematic"))
+        assert row.split()[2:] == [f"{known.viscosity:.4g}", "a^2/tau", *source.split()]
+
+
 def test_theory_knows_fluids_of_chains(capsys: Captured) -> None:
     """Beside the functions of theory, which have tests of their own."""
-    from mesokit import theory
-
     chain = ["--length", "10", "--K", "0.5"]
     assert ends("theory", "--thermostat", "maxwell-boltzmann", *chain) == 0
     said = {line[:20].strip(): line[20:] for line in capsys.readouterr().out.splitlines()}
@@ -248,8 +319,6 @@ def test_theory_knows_fluids_of_chains(capsys: Captured) -> None:
     assert float(said["slowest mode time"].split()[0]) == pytest.approx(times.mode[0], rel=1e-3)
     bonds = times.stress.sum() / 10  # kT per molecule, over the mass density
     assert float(said["viscosity of bonds"].split()[0]) == pytest.approx(bonds, rel=1e-3)
-    assert "--K: only with --length" in refusal(capsys, "theory", "--K", "1")
-    assert "--K = -1" in refusal(capsys, "theory", "--length", "2", "--K", "-1")
     assert ends("theory", "--length", "4", "--stress-time", "30", "--frequency", "0.1") == 0
     said = {line[:20].strip(): line[20:] for line in capsys.readouterr().out.splitlines()}
     assert float(said["slowest stress time"].split()[0]) == 30.0
@@ -261,8 +330,8 @@ def test_theory_knows_fluids_of_chains(capsys: Captured) -> None:
 
 def test_theory_says_what_a_thermostat_changes(capsys: Captured) -> None:
     ends("theory", "--dimension", "2", "--density", "16", "--timestep", "1", "--angle", "90")
-    said = " ".join(line[44:].strip() for line in capsys.readouterr().out.splitlines()[:3])
-    assert "which most cases have: viscosity +1" in said
+    said = capsys.readouterr().out.splitlines()[1]
+    assert said.startswith("thermostat") and "with others: maxwell-boltzmann +15 %, resc" in said
 
 
 def test_theory_prints_coefficients_and_sources(capsys: Captured) -> None:

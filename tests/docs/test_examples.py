@@ -15,6 +15,10 @@ pytestmark = pytest.mark.long
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
 SCRIPTS = {  # of some seconds, and what they draw and say
+    "draw_chains": (
+        "chains",
+        r"0\.6096. at time 5, -0\.462.. at 20[^$]* K 0\.817 holds bonds, bond length 1\.665",
+    ),
     "draw_collapse": ("collapse_1d", r"(\d) on a wall: .*\(law"),
     "draw_column": ("column", r"largest difference from \(N - i\) m g: \d\.\de-05"),
     "draw_ping_pong": ("ping_pong", ""),

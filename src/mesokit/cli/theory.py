@@ -1,204 +1,246 @@
-"""The command theory: transport coefficients of an MPCD fluid, without a case."""
+"""The command theory: transport coefficients of an MPCD fluid, and the numbers of chains in it."""
 
 from __future__ import annotations
 
-from typing import Any
+import contextlib
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from mesokit.case.amounts import number
-from mesokit.cli.commands import cli
+from mesokit.cli.commands import CASE, SET, Finite, cli, naming, read
 from mesokit.cli.words import show_table
 from mesokit.errors import CaseError
 
-KINDS = ("velocity-modes", "bonds", "springs")
-SHEARED = KINDS[1:]
-FIGURE = {  # options of figures, and of which
-    "plot": KINDS, "draw": KINDS, "wave_length": KINDS[:1], "until": KINDS[:1],
-    "bond_length": KINDS[2:], "radii": SHEARED,
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.mpcd.collision import Gas
+    from mesokit.theory import Transport
+
+Row = tuple[str, str, str]
+KEYS = {  # options, and the keys of a case that they give
+    "rule": "fluid.collision.rule", "density": "fluid.density", "timestep": "fluid.timestep",
+    "angle": "fluid.collision.angle", "angle_distribution": "fluid.collision.angle_distribution",
+    "thermostat": "fluid.thermostat.rule", "kT": "fluid.kT", "mass": "fluid.mass",
 }  # fmt: skip
-MOST_BEADS = 1000
-FILE = click.Path(dir_okay=False)
+OPTIONS = {key: f"--{name.replace('_', '-')}" for name, key in KEYS.items()}
+FIGURES = ("plot", "draw", "wave-length", "until", "bond-length", "radius")  # earlier options
+SCRIPT = "examples/draw_chains.py"
+LENGTH = click.IntRange(2, 1000)
+COEFFICIENTS = (
+    ("mean free path", "mean_free_path", "a"),
+    ("kinematic viscosity", "viscosity", "a^2/tau"),
+    ("  kinetic", "viscosity_kinetic", "a^2/tau"),
+    ("  collisional", "viscosity_collisional", "a^2/tau"),
+    ("dynamic viscosity", "dynamic_viscosity", "m/(a^(d-2) time)"),
+    ("self-diffusion", "diffusion", "a^2/tau"),
+    ("Schmidt number", "schmidt", ""),
+    ("thermal diffusivity", "thermal_diffusivity", "a^2/tau"),
+    ("speed of sound", "sound_speed", "a/tau"),
+    ("sound attenuation", "sound_attenuation", "a^2/tau"),
+)
 
 
-@cli.command()
-@click.option("--rule", default="srd", type=click.Choice(["srd", "at", "srd+a", "at+a", "none"]))
-@click.option("--dimension", default="3", type=click.Choice(["2", "3"]))
-@click.option("--density", default=10.0, help="Particles per cell.  [10]")
-@click.option("--timestep", default=0.1, help="Time between two collisions.  [0.1]")
-@click.option("--angle", type=float, help="Rotation angle in degrees, SRD only.  [130]")
-@click.option("--angle-distribution", default="fixed", type=click.Choice(["fixed", "uniform"]))
-@click.option(
-    "--thermostat",
-    default="none",
-    help="none, maxwell-boltzmann or rescale.",
-    type=click.Choice(["none", "maxwell-boltzmann", "rescale"]),
-)
-@click.option("--kT", "kT", default=1.0, help="Thermal energy.  [1]")
-@click.option("--mass", default=1.0, help="Mass of a particle.  [1]")
-@click.option(
-    "--length",
-    "lengths",
-    type=click.IntRange(2, MOST_BEADS),
-    multiple=True,
-    help="Beads of a chain, for a fluid of chains; again and again for several.",
-)
-@click.option("--K", "K", type=float, multiple=True, help="Springs between beads: U = K r^2.")
-@click.option(
-    "--stress-time",
-    "stress_times",
-    type=float,
-    multiple=True,
-    help="Instead of K: the slowest stress time that it shall make, by Rouse.",
-)
-@click.option(
-    "--frequency",
-    "frequencies",
-    type=click.FloatRange(min=0, min_open=True),
-    multiple=True,
-    help="Storage and loss modulus of chains at it.",
-)
-@click.option("--plot", type=FILE, help="Draw a figure of chains into this file: PNG, PDF or SVG.")
-@click.option("--draw", type=click.Choice(KINDS), help=f"What is drawn.  [{KINDS[0]}]")
-@click.option(
-    "--wave-length",
-    type=click.FloatRange(2),
-    help="Of velocity modes, in cells.  [30]",
-)
-@click.option(
-    "--until",
-    type=click.FloatRange(min=0, min_open=True),
-    help="Latest time of velocity modes.  [100]",
-)
-@click.option(
-    "--bond-length", type=click.FloatRange(min=0, min_open=True), help="That springs shall hold."
-)
-@click.option(
-    "--radius",
-    "radii",
-    type=click.FloatRange(min=0, min_open=True),
-    multiple=True,
-    help="Hydrodynamic radius of a bead in figures.  [that of a particle]",
-)
-def theory(**given: Any) -> None:
-    """Transport coefficients of a fluid, without running it; relaxation times, moduli and
-    viscosity of one of chains, and figures of these."""
-    figure = {key: given.pop(key) for key in FIGURE}
-    _show_theory(given, figure)
+def _moved(context: click.Context, option: click.Parameter, given: str | None) -> None:
+    if given is not None:
+        raise CaseError(f"{option.opts[0]}: unknown option; {SCRIPT} draws the figures of chains")
 
 
-def _show_theory(given: dict[str, Any], figure: dict[str, Any]) -> None:
-    from mesokit.case.component import build
-    from mesokit.cli.chains import beads_of, chains_of, rows_of
-    from mesokit.method.mpcd.fluid import Fluid
-    from mesokit.theory import origins, transport
-    from mesokit.theory.transport import takes_angle
-
-    lengths, springs = given.pop("lengths"), (given.pop("K"), given.pop("stress_times"))
-    frequencies = given.pop("frequencies")
-    if frequencies and not lengths:
-        raise CaseError("--frequency: only with --length; give both for a fluid of chains")
-    _require_plot(figure)
-    try:
-        build(Fluid, {key: given[key] for key in ("density", "timestep", "kT", "mass")})
-    except CaseError as error:
-        raise CaseError(f"--{error}") from None
-    given["dimension"] = int(given["dimension"])
-    uniform = given.pop("angle_distribution") == "uniform"
-    if uniform and given["angle"] is not None:
-        raise CaseError(f"--angle = {given['angle']:g}: no effect on angles that are uniform")
-    if given["angle"] is None and takes_angle(given["rule"]):
-        given["angle"] = "uniform" if uniform else 130.0
-    try:
-        found = transport(**given)
-    except ValueError as error:
-        text = str(error).replace("angle = 'uniform'", "angle_distribution = 'uniform'")
-        raise CaseError(f"--{text}".replace("_", "-")) from None
-    rows: list[tuple[str, str, str]] = []
-    distribution = "uniform" if uniform else "fixed"
-    known = origins(given["rule"], given["dimension"], distribution, given["thermostat"])
-    for name, field, unit in (
-        ("mean free path", "mean_free_path", "a"),
-        ("kinematic viscosity", "viscosity", "a^2/tau"),
-        ("  kinetic", "viscosity_kinetic", "a^2/tau"),
-        ("  collisional", "viscosity_collisional", "a^2/tau"),
-        ("dynamic viscosity", "dynamic_viscosity", "m/(a^(d-2) time)"),
-        ("self-diffusion", "diffusion", "a^2/tau"),
-        ("Schmidt number", "schmidt", ""),
-        ("thermal diffusivity", "thermal_diffusivity", "a^2/tau"),
-        ("speed of sound", "sound_speed", "a/tau"),
-        ("sound attenuation", "sound_attenuation", "a^2/tau"),
-    ):
-        rows.append((name, number(getattr(found, field), unit), known[field].source))
-        rows.append(("", "", f"holds: {known[field].holds}"))
-    beads, chains = beads_of(found, given), []
-    if any(springs) or (lengths and figure["draw"] != "springs"):
-        chains = chains_of(beads, lengths, *springs)
-    if given["dimension"] == 3 and found.mean_free_path < 1:
-        stirred = number(beads.stirring, "a^2/tau")
-        after = next(i for i, row in enumerate(rows) if row[0] == "Schmidt number")
-        word = "with hydrodynamic backflow, in a large box"
-        rows.insert(after, ("  in a fluid", stirred, word))
-    for chain in chains:
-        rows += rows_of(chain, beads, frequencies)
-    if figure["plot"] is not None:
-        click.echo(_draw(figure, lengths, chains, beads))
-    show_table([("thermostat", given["thermostat"], _thermostat_word(given, found)), *rows])
+def _options(command: Any) -> Any:
+    """An option for each of KEYS, and the refusal of those of figures."""
+    for name in FIGURES:
+        moved = click.option(f"--{name}", hidden=True, expose_value=False, callback=_moved)
+        command = moved(command)
+    for name, key in reversed(KEYS.items()):
+        says = click.option(OPTIONS[key], name, metavar="VALUE", help=f"Value of {key}.")
+        command = says(command)
+    return command
 
 
-def _thermostat_word(given: dict[str, Any], found: Any) -> str:
-    """What the usual thermostat would make of the viscosity, where none was given."""
-    from mesokit.theory import transport
-    from mesokit.theory.transport import takes_angle
-
-    if given["thermostat"] != "none" or not takes_angle(given["rule"]):
-        return ""
-    try:
-        held = transport(**{**given, "thermostat": "maxwell-boltzmann"})
-    except ValueError:
-        return ""
-    percent = 100 * (held.viscosity / found.viscosity - 1)
-    return (
-        f"--thermostat maxwell-boltzmann, which most cases have: viscosity {percent:+.2g} %"
-        if abs(percent) >= 0.05
-        else ""
+def _numbers(name: str, parameter: str, text: str) -> Any:
+    """An option with a positive number, which may be repeated."""
+    return click.option(
+        name, parameter, type=Finite(1e-9, 1e9), metavar="NUMBER", multiple=True, help=text
     )
 
 
-def _require_plot(figure: dict[str, Any]) -> None:
-    """Raise CaseError for options of figures that are not drawn."""
-    drawn = None if figure["plot"] is None else figure["draw"] or KINDS[0]
-    for key, kinds in FIGURE.items():
-        if key != "plot" and figure[key] and drawn not in kinds:
-            name = key.replace("_", "-").replace("radii", "radius")
-            where = "with --plot" if drawn is None else f"with --draw {' or '.join(kinds)}"
-            raise CaseError(f"--{name}: only {where}")
+@cli.command()
+@click.argument("path", metavar="[CASE]", type=CASE, required=False)
+@click.option("--dimension", type=click.Choice(["2", "3"]), help="Without CASE.  [3]")
+@_options
+@SET
+@click.option("--length", "lengths", type=LENGTH, multiple=True, help="Beads of a chain.")
+@_numbers("--K", "springs", "Springs between beads: U = K r^2.")
+@_numbers("--stress-time", "times", "Instead of K: the slowest stress time, by Rouse.")
+@_numbers("--frequency", "frequencies", "Storage and loss modulus of chains at it.")
+def theory(
+    path: Path | None,
+    dimension: str | None,
+    settings: dict[str, str],
+    lengths: Sequence[int],
+    springs: Sequence[float],
+    times: Sequence[float],
+    frequencies: Sequence[float],
+    **given: str | None,
+) -> None:
+    """Transport coefficients of the fluid of CASE, or of the one that options describe.
+
+    Options have the meanings and defaults of a case: mesokit explain fluid. A fluid of chains, in
+    CASE or by --length, also has relaxation times, moduli and a viscosity of bonds. Options of
+    chains may be repeated.
+    """
+    from mesokit.theory import self_diffusion
+
+    options = {KEYS[name]: value for name, value in given.items() if value is not None}
+    case = _case(path, dimension, options | settings)
+    with naming(path) if path else contextlib.nullcontext():
+        found, gas, rows = _fluid(case)
+    stirring = found.diffusion
+    if gas.dimension == 3 and found.mean_free_path < 1:
+        known = found.diffusion, found.viscosity, gas.density, None, gas.kT, gas.mass
+        stirring = self_diffusion(3, *known)
+        after = next(i for i, row in enumerate(rows) if row[0] == "Schmidt number")
+        word = "with hydrodynamic backflow, in a large box"
+        rows.insert(after, ("  in a fluid", number(stirring, "a^2/tau"), word))
+    friction = gas.kT / stirring
+    chains = _chains(case, friction, lengths, springs, times)
+    if frequencies and not chains:
+        raise CaseError("--frequency: only with --length, or a CASE with chains")
+    for length, K in chains:
+        rows += _chain_rows(length, K, found, gas, friction, frequencies)
+    show_table(rows)
 
 
-def _draw(figure: dict[str, Any], lengths: tuple[int, ...], chains: Any, beads: Any) -> Any:
-    """Draw it, and say into which file."""
-    import matplotlib as mpl
+def _case(path: Path | None, dimension: str | None, settings: dict[str, str]) -> Case:
+    """The case in a file, or one of the fluid that the options describe."""
+    from mesokit.case import toml
+    from mesokit.case.case import Case
+    from mesokit.case.component import name_of
+    from mesokit.method.mpcd.fluid import Fluid
 
-    from mesokit.cli import chain_figures
-    from mesokit.report import save_figure
-    from mesokit.report.finish.origin import Origin
-    from mesokit.report.notebook import ShownFigure
-    from mesokit.report.style import HEIGHT, STYLE, WIDTH
+    if path is not None:
+        if dimension is not None:
+            raise CaseError("--dimension: only without CASE, whose box has a dimension")
+        case = read(path, settings)
+        if not isinstance(getattr(case, "fluid", None), Fluid):
+            raise CaseError(f"{path}: run.method = {case.run.method!r}: expected a fluid of MPCD")
+        return case
+    size = [10] * int(dimension or 3)  # on which no coefficient depends
+    rule = {"rule": name_of(Fluid().collision)}
+    data = {"run": {"steps": 0}, "box": {"size": size}, "fluid": {"collision": rule}}
+    try:
+        for key, value in settings.items():
+            toml.override(data, key, value)
+        return Case.from_data(data, Path())
+    except CaseError as error:  # which begins with the key
+        text = re.sub(r"^[\w.]+", lambda key: OPTIONS.get(key[0], key[0]), str(error))
+        raise CaseError(text) from None
 
-    radii = figure["radii"] or (beads.radius,)
-    kind = figure["draw"] or KINDS[0]
-    if kind != "velocity-modes" and beads.dimension == 2:
-        raise CaseError(f"--draw {kind}: expected --dimension 3, as hydrodynamics are those of 3D")
-    with mpl.rc_context(STYLE):
-        drawn = ShownFigure(figsize=(WIDTH, HEIGHT), layout="constrained")
-        ax = drawn.subplots()
-        if kind == "velocity-modes":
-            wave, end = figure["wave_length"] or 30.0, figure["until"] or 100.0
-            chain_figures.velocity_modes(ax, chains, beads, wave, end)
-        elif kind == "bonds":
-            chain_figures.bond_lengths(ax, chains, beads, radii)
-        else:
-            chain_figures.spring_constants(ax, lengths, figure["bond_length"], beads, radii)
-    fluid = f"density {beads.density:g}, kinematic viscosity {beads.viscosity:.4g} a^2/tau"
-    drawn.origin = Origin(f"theory, {fluid}")
-    return save_figure(drawn, figure["plot"])
+
+def _fluid(case: Case) -> tuple[Transport, Gas, list[Row]]:
+    """Coefficients of a fluid by its own collision rule, and rows of them with their sources."""
+    from mesokit.case.component import name_of
+    from mesokit.method.mpcd.expected import setting
+    from mesokit.method.mpcd.thermostat import RULES
+    from mesokit.theory import origins
+
+    rule, gas, caveat = case.fluid.collision, setting.gas(case), setting.caveat(case)
+    name, thermostat = name_of(rule), name_of(case.fluid.thermostat)
+    try:
+        found = None if case.fluid.mixed else rule.transport(gas)
+    except ValueError as error:
+        raise CaseError(f"fluid.collision.rule = {name!r}: {error}") from None
+    if found is None:
+        why = caveat or f"no theory of this rule with fluid.thermostat.rule = {thermostat!r}"
+        raise CaseError(f"fluid.collision.rule = {name!r}: no coefficients: {why}")
+    known, sources, others = rule.in_theory(), {}, []
+    if known is not None:
+        angles = "uniform" if known.get("angle") == "uniform" else "fixed"
+        sources = origins(known["rule"], gas.dimension, angles, str(gas.thermostat))
+        same = {None, gas.thermostat}
+        others = [] if rule.isothermal else [one for one in RULES if one.in_theory not in same]
+    held = [(one, rule.transport(gas._replace(thermostat=one.in_theory))) for one in others]
+    rises = [f"{one.rule} {100 * (c.viscosity / found.viscosity - 1):+.2g} %" for one, c in held]
+    word = "viscosity with others: " + ", ".join(rises) if rises else ""
+    values = f"density {gas.density:g}, timestep {gas.timestep:g}, kT {gas.kT:g}, mass {gas.mass:g}"
+    rows = [
+        ("collision rule", name, f"{gas.dimension}D, {values}"),
+        ("thermostat", thermostat, word),
+    ]
+    if caveat:
+        rows.append(("", "", f"{caveat}; numbers of single particles, at full grid shift"))
+    for title, field, unit in COEFFICIENTS:
+        source, holds = sources.get(field, ("of this collision rule", ""))
+        rows.append((title, number(getattr(found, field), unit), source))
+        rows += [("", "", f"holds: {holds}")] if holds else []
+    return found, gas, rows
+
+
+def _chains(
+    case: Case,
+    friction: float,
+    lengths: Sequence[int],
+    springs: Sequence[float],
+    times: Sequence[float],
+) -> list[tuple[int, float]]:
+    """Length and K of the chains that the options describe, or else of those of the case."""
+    from mesokit.method.mpcd.expected.molecules import spring_of
+    from mesokit.theory import linear_modes, rouse_times
+
+    if bool(springs) + bool(times) != bool(lengths):
+        raise CaseError(
+            "--length, --K, --stress-time: expected a length, and with it one of the others"
+        )
+    if lengths:
+        slowest = [float(rouse_times(linear_modes(n), friction, K=1.0).stress[0]) for n in lengths]
+        pairs = zip(lengths, slowest, strict=True)
+        return [(n, K) for n, own in pairs for K in springs or [own / time for time in times]]
+    molecule = case.fluid.molecule
+    spring = spring_of(molecule) if molecule and molecule.topology == "chain" else None
+    return [(molecule.length, spring.K)] if spring else []
+
+
+def _chain_rows(
+    length: int,
+    K: float,
+    found: Transport,
+    gas: Gas,
+    friction: float,
+    frequencies: Sequence[float],
+) -> list[Row]:
+    """Times, moduli and viscosity of a fluid that is all chains of a kind."""
+    from mesokit import theory
+
+    eta, force = found.dynamic_viscosity, "m/time^2" if gas.dimension == 2 else "m/(a time^2)"
+    times = theory.rouse_times(theory.linear_modes(length), friction, K=K)
+    square = theory.mean_square_bond(K=K, dimension=gas.dimension, kT=gas.kT)
+    modulus = gas.density / length * gas.kT
+    bonds = modulus * float(times.stress.sum()) / (gas.density * gas.mass)
+    above = "the numbers above are those of the same fluid without bonds"
+    rouse = "approximate: Rouse, beads with the friction of single particles"
+    rows = [
+        (f"chains of {length}", f"K = {K:.4g} kT/a^2", above),
+        ("mean square bond", number(square, "a^2"), "Boltzmann"),
+        ("end to end, squared", number((length - 1) * square, "a^2"), "ideal chain"),
+        ("slowest mode time", number(float(times.mode[0]), "tau"), rouse),
+        ("slowest stress time", number(float(times.stress[0]), "tau"), "half of Rouse's"),
+        ("modulus", number(modulus, force), "kT for each molecule in a volume"),
+        ("viscosity of bonds", number(bonds, "a^2/tau"), "slow flow"),
+        ("kinematic viscosity", number(found.viscosity + bonds, "a^2/tau"), "with the bonds"),
+    ]
+    with contextlib.suppress(ValueError):  # bonds shorter than beads are large
+        if gas.dimension == 3:
+            zimm = theory.zimm_times(length, friction, eta, math.sqrt(square), gas.kT)
+            note = "approximate: Zimm, one chain in a simple fluid"
+            rows.insert(4, ("with hydrodynamics", number(float(zimm.mode[0]), "tau"), note))
+    for w in frequencies:
+        at = f"at the frequency {w:g}/time"
+        stored = theory.storage_modulus(w, modulus, times.stress)
+        lost = theory.loss_modulus(w, modulus, times.stress, eta)
+        rows.append(("storage modulus", number(float(stored), force), at))
+        rows.append(("loss modulus", number(float(lost), force), at))
+    return rows
