@@ -14,15 +14,9 @@ from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.molecules import KIND, Group, free_bond, kind_of
+from mesokit.method.mpcd.expected.whose import default_of, groups_of, strangers
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
-from mesokit.observe.shared.whose import (
-    OF,
-    at_rest,
-    default_of,
-    groups_of,
-    periodic_all_over,
-    strangers,
-)
+from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
@@ -197,8 +191,7 @@ class StructureFactorAccumulator(BlockAccumulator):
 
     def expected(self) -> Array | None:
         """That of one molecule on the average, where molecules do not know of one another."""
-        kept = at_rest(self.case) and strangers(self.case, self.of, self.groups)
-        if not kept:
+        if not strangers(self.case, self.of, self.groups):
             return None
         lengths, place = np.unique(np.round(self.lengths, 12), return_inverse=True)
         total, beads = np.zeros(len(lengths)), 0

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.spheres.common.expected.answers import answers
+from mesokit.method.spheres.common.expected.neighbours import NeighboursOfSpheres
 from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.start.first_state import (
@@ -53,13 +54,13 @@ def columns(case: Case) -> Columns:
     return Columns(names, ("translation", "potential"), read)
 
 
+EXPECTED = (SoftCooling, Displacement, NeighboursOfSpheres, VelocityMemory)
 METHOD = Method(
     name="soft-spheres",
     sections=Sections,
     keys=KEYS,
     observables=(MeanSquareDisplacement,),
-    expected={theory.answers: theory for theory in (SoftCooling, Displacement, VelocityMemory)}
-    | answers(equilibrium),
+    expected={theory.answers: theory for theory in EXPECTED} | answers(equilibrium),
     check=check,
     groups=groups,
     timestep=timestep_of,
