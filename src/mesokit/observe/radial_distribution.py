@@ -13,8 +13,7 @@ from pydantic import field_validator
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
-from mesokit.observe.shared.over_pairs import OwnPairs
-from mesokit.observe.shared.pair_counts import count_pairs, count_within, shells
+from mesokit.observe.shared.pairs import OwnPairs, count_pairs, count_within, shells
 from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
