@@ -27,6 +27,8 @@ from mesokit.case.toml import override, parse, read
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.observe import OBSERVABLES as OF_MPCD
 from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES
+from mesokit.method.spheres.hard.observe import OBSERVABLES as OF_HARD_SPHERES
+from mesokit.method.spheres.soft.observe import OBSERVABLES as OF_SOFT_SPHERES
 from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import Observable
@@ -148,7 +150,7 @@ def case_of(scene: Scene, seed: int) -> Case:
     method = method_of(plain)
     bases = [base for base in method.observables if base is not Observable]
     own = [kind for base in bases for kind in base.__subclasses__()]
-    for kind in (*OF_SEVERAL, *OF_MPCD, *OF_SPHERES, *own):
+    for kind in (*OF_SEVERAL, *OF_MPCD, *OF_SPHERES, *OF_HARD_SPHERES, *OF_SOFT_SPHERES, *own):
         if not is_offered(kind, method.name, method.observables):
             continue
         try:

@@ -80,6 +80,8 @@ from mesokit.method.mpcd.numbers import Derived as Derived
 from mesokit.method.mpcd.observe.bond_correlation import BondCorrelation as BondCorrelation
 from mesokit.method.mpcd.observe.bond_length import BondLength as BondLength
 from mesokit.method.mpcd.observe.cell_occupancy import CellOccupancy as CellOccupancy
+from mesokit.method.mpcd.observe.conservation import Conservation as Conservation
+from mesokit.method.mpcd.observe.density_field import DensityField as DensityField
 from mesokit.method.mpcd.observe.density_gradient import DensityGradient as DensityGradient
 from mesokit.method.mpcd.observe.domain_size import DomainSize as DomainSize
 from mesokit.method.mpcd.observe.dynamic_moduli import DynamicModuli as DynamicModuli
@@ -93,15 +95,18 @@ from mesokit.method.mpcd.observe.normal_modes import NormalModes as NormalModes
 from mesokit.method.mpcd.observe.probe import Probe as Probe
 from mesokit.method.mpcd.observe.radial_profile import RadialProfile as RadialProfile
 from mesokit.method.mpcd.observe.residence_time import ResidenceTime as ResidenceTime
+from mesokit.method.mpcd.observe.snapshots import Snapshots as Snapshots
 from mesokit.method.mpcd.observe.stress import Stress as Stress
 from mesokit.method.mpcd.observe.stress_autocorrelation import (
     StressAutocorrelation as StressAutocorrelation,
 )
 from mesokit.method.mpcd.observe.stress_in_time import StressInTime as StressInTime
+from mesokit.method.mpcd.observe.structure_factor import StructureFactor as StructureFactor
 from mesokit.method.mpcd.observe.surface_profile import SurfaceProfile as SurfaceProfile
 from mesokit.method.mpcd.observe.transit_time import TransitTime as TransitTime
 from mesokit.method.mpcd.observe.translocation_time import TranslocationTime as TranslocationTime
 from mesokit.method.mpcd.observe.transverse_modes import TransverseModes as TransverseModes
+from mesokit.method.mpcd.observe.velocity_field import VelocityField as VelocityField
 from mesokit.method.mpcd.observe.wake import Wake as Wake
 from mesokit.method.mpcd.observe.wall_stress import WallStress as WallStress
 from mesokit.method.mpcd.si import SI as SI
@@ -120,12 +125,6 @@ from mesokit.method.mpcd.thermostat.protocol import Thermostat as Thermostat
 from mesokit.method.mpcd.thermostat.rescale import Rescale as Rescale
 from mesokit.method.spheres.common.kinds import SphereKind as SphereKind
 from mesokit.method.spheres.common.observe.cluster_size import ClusterSize as ClusterSize
-from mesokit.method.spheres.common.observe.collision_rate import CollisionRate as CollisionRate
-from mesokit.method.spheres.common.observe.contact_stress import ContactStress as ContactStress
-from mesokit.method.spheres.common.observe.equation_of_state import (
-    EquationOfState as EquationOfState,
-)
-from mesokit.method.spheres.common.observe.free_times import FreeTimes as FreeTimes
 from mesokit.method.spheres.common.observe.granular_temperature import (
     GranularTemperature as GranularTemperature,
 )
@@ -151,7 +150,13 @@ from mesokit.method.spheres.hard.collision.viscoelastic import Viscoelastic as V
 from mesokit.method.spheres.hard.heating.andersen import Andersen as Andersen
 from mesokit.method.spheres.hard.heating.kicks import Kicks as Kicks
 from mesokit.method.spheres.hard.heating.protocol import Heating as Heating
+from mesokit.method.spheres.hard.observe.collision_rate import CollisionRate as CollisionRate
+from mesokit.method.spheres.hard.observe.equation_of_state import (
+    EquationOfState as EquationOfState,
+)
+from mesokit.method.spheres.hard.observe.free_times import FreeTimes as FreeTimes
 from mesokit.method.spheres.hard.section import HardSpheres as HardSpheres
+from mesokit.method.spheres.soft.observe.contact_stress import ContactStress as ContactStress
 from mesokit.method.spheres.soft.pair.hertz import HertzLaw as HertzLaw
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw as ContactLaw
 from mesokit.method.spheres.soft.pair.protocol import PairLaw as PairLaw
@@ -160,8 +165,6 @@ from mesokit.method.spheres.soft.section import SoftSpheres as SoftSpheres
 from mesokit.method.spheres.soft.thermostat.langevin import Langevin as Langevin
 from mesokit.method.spheres.soft.thermostat.protocol import SoftThermostat as SoftThermostat
 from mesokit.method.spheres.soft.thermostat.rescale import RescaleAll as RescaleAll
-from mesokit.observe.conservation import Conservation as Conservation
-from mesokit.observe.density_field import DensityField as DensityField
 from mesokit.observe.density_profile import DensityProfile as DensityProfile
 from mesokit.observe.flow_frames import FlowFrames as FlowFrames
 from mesokit.observe.hexatic_order import HexaticOrder as HexaticOrder
@@ -169,14 +172,11 @@ from mesokit.observe.mean_square_displacement import (
     MeanSquareDisplacement as MeanSquareDisplacement,
 )
 from mesokit.observe.radial_distribution import RadialDistribution as RadialDistribution
-from mesokit.observe.snapshots import Snapshots as Snapshots
-from mesokit.observe.structure_factor import StructureFactor as StructureFactor
 from mesokit.observe.temperature_profile import TemperatureProfile as TemperatureProfile
 from mesokit.observe.velocity_autocorrelation import (
     VelocityAutocorrelation as VelocityAutocorrelation,
 )
 from mesokit.observe.velocity_distribution import VelocityDistribution as VelocityDistribution
-from mesokit.observe.velocity_field import VelocityField as VelocityField
 from mesokit.observe.velocity_profile import VelocityProfile as VelocityProfile
 from mesokit.potential.bending import Bending as Bending
 from mesokit.potential.fene import FENE as FENE

@@ -75,9 +75,7 @@ ROWS = {
         "case", "errors", "method.brownian", "observe", "processes.cores", "scalar", "seam",
         "statistics",
     ),
-    "observe/": (
-        "case", "errors", "geometry", "method.mpcd", "observe", "seam", "statistics", "theory",
-    ),
+    "observe/": ("case", "errors", "geometry", "observe", "seam", "statistics", "theory"),
     "io/": ("case", "errors", "geometry", "io", "seam"),
     "report/": ("case", "errors", "geometry", "io", "observe", "report", "seam"),
     "report/flow/state.py": ("case", "seam"),

@@ -9,12 +9,14 @@ from mesokit import AT
 from mesokit.method.mpcd.observe import OBSERVABLES as OF_MPCD
 from mesokit.method.mpcd.species import Species
 from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES
+from mesokit.method.spheres.hard.observe import OBSERVABLES as OF_HARD_SPHERES
+from mesokit.method.spheres.soft.observe import OBSERVABLES as OF_SOFT_SPHERES
 from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from mesokit.seam.result import with_error
 from tests.helpers.fake_fluid import FakeFluid, case_for, taken
 
 # those of spheres have their own tests: no fluid can answer them
-OBSERVABLES = (*OF_SEVERAL, *OF_MPCD, *OF_SPHERES)
+OBSERVABLES = (*OF_SEVERAL, *OF_MPCD, *OF_SPHERES, *OF_HARD_SPHERES, *OF_SOFT_SPHERES)
 OF_FLUIDS = [kind for kind in OBSERVABLES if not kind.methods]
 
 

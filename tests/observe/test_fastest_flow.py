@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mesokit.observe.velocity_field import fastest
+from mesokit.method.mpcd.observe.velocity_field import fastest
 from mesokit.seam.estimate import of_ratio
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from mesokit import Box, Case, MeanSquareDisplacement, Run, Simulation
 from mesokit.method.brownian import Brownian
-from mesokit.observe.shared.slope import late_slope
+from mesokit.observe.mean_square_displacement import late_slope
 from mesokit.seam.estimate import Estimate
 from tests.helpers.fake_spheres import hard
 

@@ -22,11 +22,13 @@ from mesokit import (
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES_ALONE
 from mesokit.method.spheres.common.observe.cluster_size import cluster_sizes
+from mesokit.method.spheres.hard.observe import OBSERVABLES as OF_HARD_SPHERES
 from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from tests.helpers.comparisons import comparison, comparisons
 from tests.helpers.fake_spheres import FakeSpheres, hard, hard_case_for
 
-OF_SPHERES = [kind for kind in (*OF_SEVERAL, *OF_SPHERES_ALONE) if "event-driven" in kind.methods]
+OBSERVABLES = (*OF_SEVERAL, *OF_SPHERES_ALONE, *OF_HARD_SPHERES)
+OF_SPHERES = [kind for kind in OBSERVABLES if "event-driven" in kind.methods]
 
 
 def sampled(accumulator, spheres, samples):

@@ -18,8 +18,8 @@ from mesokit import (
 )
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.molecule import Molecule
-from mesokit.observe.shared.pair_counts import count_pairs, count_within
-from mesokit.observe.shared.wave_vectors import wave_shells
+from mesokit.method.mpcd.observe.structure_factor import wave_shells
+from mesokit.observe.shared.pairs import count_pairs, count_within
 from tests.helpers.comparisons import comparisons
 from tests.helpers.fake_fluid import FakeFluid
 from tests.helpers.fake_molecules import Moved

@@ -299,7 +299,7 @@ def test_chi_square_of_a_profile_that_forgets_slowly(make_case):
 
 def test_barometric_density_keeps_the_number(make_case):
     case = make_case((8, 8), walls=[Plates(axis="y")], force=Uniform((0, -0.3)))
-    expected = DensityProfile().accumulator(case).expected()
+    expected = DensityProfile().accumulator(case).result().expected
     assert expected.mean() == pytest.approx(10)
     assert np.log(expected[0] / expected[-1]) == pytest.approx(0.3 * (8 - 0.25))
 

@@ -22,9 +22,9 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.rheometer import modes_of_stress
 from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.observe.conservation import ROWS
 from mesokit.method.mpcd.observe.wall_stress import balance
 from mesokit.method.mpcd.solutes import Polymer, Solutes
-from mesokit.observe.conservation import ROWS
 from tests.helpers.comparisons import by_name, comparisons
 from tests.helpers.fake_fluid import FakeFluid
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from mesokit.observe.mean_square_displacement import late_slope
 from mesokit.observe.shared.origins import BLOCKS, Origins
-from mesokit.observe.shared.slope import late_slope
 
 SEEDS = 40
 

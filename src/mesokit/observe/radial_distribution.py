@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -13,10 +13,8 @@ from pydantic import field_validator
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import Group, free_diffusion, kind_of
-from mesokit.observe.shared.over_pairs import OwnPairs
-from mesokit.observe.shared.pair_counts import count_pairs, count_within, shells
-from mesokit.observe.shared.whose import OF, default_of, groups_of, periodic_all_over, strangers
+from mesokit.observe.shared.pairs import OwnPairs, count_pairs, count_within, shells
+from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import method_of
@@ -34,13 +32,43 @@ ROUNDING = 1e-12
 BEYOND, SHELLS = 1.1, 5  # contact diameters to which shells reach, and their number
 
 
-class Neighbours(Protocol):
-    """What a method knows of equal spheres: their diameter and g at contact, nan if not known, and
-    a note on it."""
+class Group(Protocol):
+    """Molecules of one kind: the number of their first particle, particles of a molecule,
+    molecules."""
 
+    @property
+    def first(self) -> int: ...
+    @property
+    def length(self) -> int: ...
+    @property
+    def number(self) -> int: ...
+    def beads(self, wanted: int | None = None) -> Ids: ...
+
+
+class Neighbours(Protocol):
+    """What a method says of neighbours.
+
+    It is made of a case and the observable, and raises CaseError where there are none. Pairs are
+    those of groups `first` with `second`, or without these those within `first`. `size` is that of
+    the largest particles. Of equal hard spheres `diameter` is where they touch, `value` g there,
+    both nan if not known, and `note` what to say of it.
+    """
+
+    first: list[Group]
+    second: list[Group]
+    size: float
     diameter: float
     value: float
     note: str
+
+    def sampled(self, group: Group) -> bool:
+        """True if some molecules of a group are looked at, others at each sample."""
+
+    def strangers(self, groups: list[Group]) -> bool:
+        """True if molecules are independent of all others."""
+
+    def diffusion(self, group: Group) -> float | None:
+        """Diffusion coefficient of the molecules of a group, None if not known."""
 
 
 @component
@@ -83,6 +111,11 @@ class RadialDistribution(Observable):
             raise ValueError("expected 'beads' or 'particles'; kinds are chosen by `kinds`")
         return of
 
+    def theory(self, case: Case) -> Neighbours:
+        """What the method of a case says of it. Raises CaseError without particles to look at."""
+        found: Neighbours = method_of(case).expected["radial-distribution"](case, self)
+        return found
+
     def check(self, case: Case) -> None:
         """Raise CaseError in a box that is not periodic, and without a pair to look at."""
         periodic_all_over(case, "radial-distribution")
@@ -91,7 +124,8 @@ class RadialDistribution(Observable):
             raise CaseError(
                 f"reach = {self.reach:g}: expected at most {half:g}, half of the shortest side"
             )
-        first, second = self.chosen(case)
+        known = self.theory(case)
+        first, second = known.first, known.second
         if len(self.kinds) == 2 and {g.first for g in first} & {g.first for g in second}:
             raise CaseError(f"kinds = {show(self.kinds)}: expected two different ones, or one")
         number = sum(group.number * group.length for group in first)
@@ -99,18 +133,6 @@ class RadialDistribution(Observable):
         if not second and (number < 2 or (self.pairs == "between" and molecules < 2)):
             what = "molecules" if self.pairs == "between" else "particles or beads"
             raise CaseError(f"no pair to look at; expected two {what} at least")
-
-    def chosen(self, case: Case) -> tuple[list[Group], list[Group]]:
-        """Groups of the first kind and of the second, which is empty for pairs within the first."""
-        of = default_of(case, self.of)
-        if not self.kinds:
-            return groups_of(case, of), []
-        try:
-            first, *others = (groups_of(case, of, kind) for kind in self.kinds)
-        except CaseError as error:  # which speaks of one kind
-            known = str(error).partition(": ")[2]
-            raise CaseError(f"kinds = {show(self.kinds)}: {known}") from None
-        return first, others[0] if others else []
 
     def accumulator(self, case: Case) -> RadialDistributionAccumulator:
         """An empty memory for it."""
@@ -126,28 +148,30 @@ class RadialDistributionAccumulator(BlockAccumulator):
     def __init__(self, observable: RadialDistribution, case: Case) -> None:
         observable.check(case)
         self.name, self.case, self.observable = observable.label, case, observable
-        self.first, self.second = observable.chosen(case)
-        most = observable.particles
+        self.theory = observable.theory(case)
+        self.first, self.second = self.theory.first, self.theory.second
         self.beads, self.others = (
-            [_sample(case, group, most) for group in groups] for groups in (self.first, self.second)
+            [self.sample(group) for group in groups] for groups in (self.first, self.second)
         )
         self.box = np.array(case.box.size, float)
-        method = method_of(case)
-        unit = case.spheres.largest(case.box) if case.particles_have("diameter") else 1.0
-        reach = observable.reach or min(FARTHEST * unit, min(case.box.size) / 2)
+        reach = observable.reach or min(FARTHEST * self.theory.size, min(case.box.size) / 2)
         self.edges = np.linspace(0.0, reach, observable.bins + 1)
         self.shells = shells(self.edges, case.box.dimension)
-        known = method.expected.get("radial-distribution")
-        self.theory: Neighbours | None = None if known is None else known(case, observable)
-        self.near = np.zeros(0) if self.theory is None else _beyond(self.theory.diameter)
+        self.near = _beyond(self.theory.diameter)
         self.blocks = Blocks((observable.bins + max(0, len(self.near) - 1),))
         self.own = OwnPairs(len(self.beads[0]), observable.bins) if self.alone() else None
 
     def alone(self) -> bool:
         """Whether all molecules of one kind are looked at, and know nothing of one another."""
-        of, groups = default_of(self.case, self.observable.of), self.first
-        whole = len(groups) == 1 and len(self.beads[0]) == groups[0].number > 1
-        return whole and not self.second and strangers(self.case, of, groups)
+        whole = len(self.first) == 1 and len(self.beads[0]) == self.first[0].number > 1
+        return whole and not self.second and self.theory.strangers(self.first)
+
+    def sample(self, group: Group) -> Ids:
+        """Beads (molecules, length) of a group, or of so many as have enough particles."""
+        if not self.theory.sampled(group):
+            return group.beads()
+        most = max(2, self.observable.particles // group.length)
+        return group.beads(min(group.number, most))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -181,7 +205,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
 
     def number(self) -> float:
         """Pairs that there are at any distance, of all molecules and not only the sample."""
-        within, between = _pairs(self.first)
+        within, between = _pairs([(group.number, group.length) for group in self.first])
         if self.second:
             return float(_size(self.first) * _size(self.second))
         return between if self.observable.pairs == "between" else within + between
@@ -195,14 +219,15 @@ class RadialDistributionAccumulator(BlockAccumulator):
             share = len(one) * len(other) / self.number()
             return count_pairs(one, other, self.box, edges) / share
         seen = count_pairs(one, None, self.box, edges)
-        looked = [g._replace(number=len(b)) for g, b in zip(self.first, self.beads, strict=True)]
-        if looked == self.first and self.observable.pairs == "all":
+        whole = [(group.number, group.length) for group in self.first]
+        looked = [b.shape for b in self.beads]
+        if looked == whole and self.observable.pairs == "all":
             return seen.astype(float)
         inside = np.zeros(len(seen), np.int64)
         for beads, r in zip(self.beads, places, strict=True):
             inside += count_within(r.reshape(*beads.shape, -1), self.box, edges)
         # molecules are taken as wholes: of pairs within them another part than of all others
-        (within, between), (within_seen, between_seen) = _pairs(self.first), _pairs(looked)
+        (within, between), (within_seen, between_seen) = _pairs(whole), _pairs(looked)
         found = (seen - inside) * (between / between_seen if between_seen else 0.0)
         if self.observable.pairs == "all" and within_seen:
             found = found + inside * (within / within_seen)
@@ -255,11 +280,11 @@ class RadialDistributionAccumulator(BlockAccumulator):
 
     def expected(self) -> float | None:
         """1 of what is independent of all others; None within molecules, and with potentials."""
-        case, groups = self.case, self.first + self.second
+        groups = self.first + self.second
         bonded = max(group.length for group in groups) > 1
         if bonded and self.observable.pairs == "all" and not self.second:
             return None
-        return 1.0 if strangers(case, default_of(case, self.observable.of), groups) else None
+        return 1.0 if self.theory.strangers(groups) else None
 
     def comparisons(self, expected: float | None) -> list[Comparison]:
         """Neighbours within the reach; without a theory also where g is largest."""
@@ -282,12 +307,13 @@ class RadialDistributionAccumulator(BlockAccumulator):
             each = self.errors(found, np.eye(len(self.shells)))
             error = float(_unless_fixed(height, each[top]))
             listed.append(Comparison("largest g(r)", height, error, note=note))
-        if self.theory is not None and len(self.near):
-            listed.append(self.contact(self.theory))
+        if len(self.near):
+            listed.append(self.contact())
         return listed
 
-    def contact(self, theory: Neighbours) -> Comparison:
+    def contact(self) -> Comparison:
         """g at contact: a parabola through the shells beyond it."""
+        theory = self.theory
         found, centres = of_mean(self.blocks), (self.near[1:] + self.near[:-1]) / 2
         powers = np.vander(centres / theory.diameter - 1.0, 3, increasing=True)
         weights = np.zeros(len(found.value))
@@ -298,8 +324,8 @@ class RadialDistributionAccumulator(BlockAccumulator):
     def times(self) -> float:
         """How often in a run two of them diffuse over the reach, after which their distance is
         forgotten: R^2/(2 d D), D the sum of their coefficients; nan where these are not known."""
-        case, of = self.case, default_of(self.case, self.observable.of)
-        centres = [self.diffusion(group, of) for group in self.first + self.second]
+        case = self.case
+        centres = [self.theory.diffusion(group) for group in self.first + self.second]
         if any(found is None for found in centres):
             return np.nan
         slowest = min(found for found in centres[: len(self.first)] if found)
@@ -312,13 +338,6 @@ class RadialDistributionAccumulator(BlockAccumulator):
         )
         reach = float(self.edges[-1])
         return run * 2 * case.box.dimension * (slowest + other) / reach**2
-
-    def diffusion(self, group: Group, of: str) -> float | None:
-        """Coefficient of the molecules of a group, by molecular chaos: Rouse's."""
-        if self.case.particles_have("diameter"):
-            return None
-        alone = free_diffusion(self.case, of, kind_of(self.case, group))
-        return None if alone is None else alone / group.length
 
     def short_run(self) -> str:
         """Where blocking cannot see how slowly neighbours change: a note."""
@@ -333,13 +352,6 @@ def _unless_fixed(value: Array | float, error: Array | float) -> Array:
     return np.where(np.asarray(error) > ROUNDING * np.abs(value), error, np.nan)
 
 
-def _sample(case: Case, group: Group, most: int) -> Ids:
-    """Beads (molecules, length) of a group; of the fluid of so many as have `most` at least."""
-    if group.first >= case.particles or case.particles_have("diameter"):
-        return group.beads()
-    return group.beads(min(group.number, max(2, most // group.length)))
-
-
 def _beyond(diameter: float) -> Array:
     """Edges of shells from contact on; none without a diameter of all."""
     return np.zeros(0) if math.isnan(diameter) else diameter * np.linspace(1.0, BEYOND, SHELLS + 1)
@@ -350,8 +362,8 @@ def _size(groups: list[Group]) -> int:
     return sum(group.number * group.length for group in groups)
 
 
-def _pairs(groups: list[Group]) -> tuple[float, float]:
-    """Pairs within molecules, and of different ones."""
-    within = sum(group.number * (group.length * (group.length - 1) // 2) for group in groups)
-    size = _size(groups)
+def _pairs(groups: Sequence[tuple[int, ...]]) -> tuple[float, float]:
+    """Pairs within molecules, and of different ones, of groups by their number and length."""
+    within = sum(number * (length * (length - 1) // 2) for number, length in groups)
+    size = sum(number * length for number, length in groups)
     return float(within), float(size * (size - 1) // 2 - within)

@@ -12,7 +12,7 @@ from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.observe.shared import chi_square
-from mesokit.observe.shared.whose import KIND, ids_of_kind
+from mesokit.observe.shared.profile import KIND
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
@@ -81,11 +81,6 @@ class VelocityDistribution(Observable):
         if self.component is not None:
             case.box.index(self.component, "component")
         self.velocities(case)
-
-    def group(self, case: Case) -> NDArray[np.int64]:
-        """Numbers of the spheres of its kind, or of all."""
-        chosen = ids_of_kind(case, self.kind)
-        return np.arange(case.particles) if chosen is None else chosen
 
     def velocities(self, case: Case) -> Velocities:
         """What the method of a case says of them."""

@@ -17,11 +17,15 @@ from mesokit.geometry.walls import solids
 from mesokit.method.mpcd.checks import combinations
 from mesokit.method.mpcd.columns import columns
 from mesokit.method.mpcd.expected.displacement import Displacement
+from mesokit.method.mpcd.expected.neighbours import NeighboursInFluid
 from mesokit.method.mpcd.expected.setting import aperiodic_axes
 from mesokit.method.mpcd.expected.velocities import Velocities
 from mesokit.method.mpcd.expected.velocity_memory import VelocityMemory
 from mesokit.method.mpcd.groups import bonded_pairs, groups
 from mesokit.method.mpcd.observe import Observable
+from mesokit.method.mpcd.observe.shared.density_in_slices import DensityInSlices
+from mesokit.method.mpcd.observe.shared.flow_in_slices import FlowInSlices
+from mesokit.method.mpcd.observe.shared.temperature_in_slices import TemperatureInSlices
 from mesokit.method.mpcd.sections import KEYS, Sections
 from mesokit.processes.world import world
 from mesokit.seam.method import Enclosure, InitialState, Method
@@ -137,6 +141,15 @@ def _si(case: Case) -> SI:
     return convert(case)
 
 
+EXPECTED = (
+    DensityInSlices,
+    Displacement,
+    FlowInSlices,
+    NeighboursInFluid,
+    TemperatureInSlices,
+    Velocities,
+    VelocityMemory,
+)
 ARRAYS = ("positions", "velocities", "beads", "bead_velocities")
 METHOD = Method(
     name="mpcd",
@@ -153,7 +166,7 @@ METHOD = Method(
     initial=InitialState(_first_state, _start, ARRAYS, _starts, "fluid.start.run"),
     engine=_engine,
     keep_files=_keep_files,
-    expected={theory.answers: theory for theory in (Displacement, Velocities, VelocityMemory)},
+    expected={theory.answers: theory for theory in EXPECTED},
     log=columns,
     si=_si,
     build_up=_build_up,

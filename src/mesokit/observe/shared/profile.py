@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
-from mesokit.case.component import component, name_of, param
-from mesokit.method.mpcd.expected import setting
+from mesokit.case.component import component, param
+from mesokit.geometry.walls import closed_axes
 from mesokit.observe.shared.mode_chi_square import mode_chi_square
 from mesokit.seam.estimate import Estimate
-from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison
 from mesokit.statistics import Blocks
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 Array = NDArray[np.floating[Any]]
+KIND = "which of spheres.kinds: name, or number from 1 (all spheres unless said)"
 
 
 @component
@@ -37,10 +38,15 @@ class Profile(Observable):
         case.box.index(self.axis)
 
 
-def expected_in_slices(case: Case, observable: Profile) -> Any:
-    """What a method of spheres says of a profile; None of a fluid, which says it elsewhere."""
-    found = method_of(case).expected.get(name_of(observable))
-    return None if found is None else found(case, observable)
+class Compared(NamedTuple):
+    """A profile beside the theory of a method: what is expected in each slice, None without a
+    theory; what the theory is called; numbers; the curve of a fit; and what else to store."""
+
+    expected: Array | None
+    law: str
+    comparisons: list[Comparison]
+    fit: Array | None = None
+    extra: Mapping[str, Any] = {}
 
 
 class ProfileAccumulator(BlockAccumulator):
@@ -55,25 +61,24 @@ class ProfileAccumulator(BlockAccumulator):
         self.counts: tuple[int, ...] = (self.bins,)
         self.edges = np.linspace(0.0, case.box.size[self.axis], self.bins + 1)
         self.centres = (self.edges[1:] + self.edges[:-1]) / 2
-        self.periodic = self.axis not in setting.closed_axes(case)
+        self.periodic = self.axis not in closed_axes(case)
         self.blocks = Blocks((width, self.bins))
-        self.ids: NDArray[np.int64] | None = None  # of spheres that count, where not all do
+        self.ids: NDArray[np.int64] | None = None  # of particles that count, None if all do
 
-    def observe(self, fluid: Any) -> None:
+    def observe(self, engine: Any) -> None:
         """Take one sample."""
-        chosen = () if self.ids is None else (self.ids,)
-        self.blocks.add(self.sample(*fluid.moments(self.axes, self.counts, *chosen)))
+        self.blocks.add(self.sums(engine))
 
     @abstractmethod
-    def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
-        """The (width, *counts) numbers to add up."""
+    def sums(self, engine: Any) -> Array:
+        """The (width, *counts) numbers to add up at this moment."""
+
+    def moments(self, engine: Any) -> tuple[Array, Array, Array, Array]:
+        """Number, mass, momentum (d, *counts) and sum of m v^2 in the slices."""
+        chosen = () if self.ids is None else (self.ids,)
+        found: tuple[Array, Array, Array, Array] = engine.moments(self.axes, self.counts, *chosen)
+        return found
 
     def chi_square(self, estimate: Estimate, expected: Array, note: str) -> list[Comparison]:
         """Chi-square of the whole profile per degree of freedom, as a comparison with 1."""
         return mode_chi_square(estimate, expected, self.periodic, note)
-
-
-def part_of(estimate: Estimate, chosen: NDArray[np.bool_]) -> Estimate:
-    """Some slices of a profile."""
-    weights = estimate.weights if estimate.weights.ndim == 1 else estimate.weights[:, chosen]
-    return Estimate(estimate.value[chosen], estimate.residuals[:, chosen], weights)

@@ -9,7 +9,7 @@ import numpy as np
 
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
-from mesokit.observe.shared.whose import periodic_all_over
+from mesokit.observe.shared.periodic import periodic_all_over
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result

@@ -9,7 +9,6 @@ from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.spheres.common.expected.answers import answers
 from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
-from mesokit.method.spheres.common.observe import MeanSquareDisplacement
 from mesokit.method.spheres.common.start.first_state import (
     ARRAYS,
     RUN,
@@ -22,6 +21,7 @@ from mesokit.method.spheres.hard.displacement import Displacement
 from mesokit.method.spheres.hard.engine.engine import EventDriven
 from mesokit.method.spheres.hard.equilibrium import equilibrium
 from mesokit.method.spheres.hard.neighbours import Neighbours
+from mesokit.method.spheres.hard.observe import MeanSquareDisplacement
 from mesokit.method.spheres.hard.section import KEYS, Sections
 from mesokit.method.spheres.hard.summary import summary
 from mesokit.method.spheres.hard.velocity_memory import EnskogMemory

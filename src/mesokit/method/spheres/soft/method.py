@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.spheres.common.expected.answers import answers
+from mesokit.method.spheres.common.expected.neighbours import NeighboursOfSpheres
 from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
-from mesokit.method.spheres.common.observe import MeanSquareDisplacement
 from mesokit.method.spheres.common.start.first_state import (
     ARRAYS,
     RUN,
@@ -23,6 +23,7 @@ from mesokit.method.spheres.soft.displacement import Displacement
 from mesokit.method.spheres.soft.engine.engine import SoftEngine
 from mesokit.method.spheres.soft.equilibrium import equilibrium
 from mesokit.method.spheres.soft.first_speeds import with_speed
+from mesokit.method.spheres.soft.observe import MeanSquareDisplacement
 from mesokit.method.spheres.soft.scales import timestep_of
 from mesokit.method.spheres.soft.section import KEYS, Sections
 from mesokit.method.spheres.soft.summary import summary
@@ -53,13 +54,13 @@ def columns(case: Case) -> Columns:
     return Columns(names, ("translation", "potential"), read)
 
 
+EXPECTED = (SoftCooling, Displacement, NeighboursOfSpheres, VelocityMemory)
 METHOD = Method(
     name="soft-spheres",
     sections=Sections,
     keys=KEYS,
     observables=(MeanSquareDisplacement,),
-    expected={theory.answers: theory for theory in (SoftCooling, Displacement, VelocityMemory)}
-    | answers(equilibrium),
+    expected={theory.answers: theory for theory in EXPECTED} | answers(equilibrium),
     check=check,
     groups=groups,
     timestep=timestep_of,

@@ -11,9 +11,9 @@ from scipy.optimize import brentq
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.numbers import TIMES
+from mesokit.method.mpcd.observe.shared.flow_in_slices import ENOUGH
 from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.observe.shared.short_run import of_relaxations
-from mesokit.observe.velocity_profile import ENOUGH
 from mesokit.seam.method import BuildUp
 from mesokit.statistics import Blocks
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +12,11 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.geometry.walls import closed_axes
 from mesokit.method.spheres.common.expected.equilibrium import Equilibrium, still_walls, surfaces
+from mesokit.method.spheres.common.groups import ids_of_kind, refuse_molecules
+from mesokit.observe.shared.profile import Compared, ProfileAccumulator
+from mesokit.seam.engine import RunningSpheres
+from mesokit.seam.estimate import Estimate
+from mesokit.seam.result import Comparison
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -19,6 +24,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Find = Callable[["Case"], Equilibrium | None]
 DILUTE = 0.005  # fraction above which an ideal gas is 1 % off, or more
+KEPT = 1e-9  # relative error below which there is none but rounding
 FREEZES = {2: 0.69, 3: 0.49}  # packing fraction above which one sample is ordered for good
 
 
@@ -30,11 +36,23 @@ class Slices:
         self.pull = case.spheres.gravity or (0.0,) * case.box.dimension
         self.closed = closed_axes(case)
         self.axis = case.box.index(observable.axis)
+        some = None if observable.kind is None else ids_of_kind(case, observable.kind)
+        self.ids: NDArray[np.int64] | None = some
 
     def inside(self, edges: Array) -> NDArray[np.bool_]:
         """The slices that centres of all sizes reach every place of."""
         off = self.case.spheres.largest(self.case.box) / 2 if self.axis in self.closed else 0.0
         return (edges[:-1] >= off) & (edges[1:] <= edges[-1] - off)
+
+    def chi_square(
+        self, profile: ProfileAccumulator, measured: Estimate, expected: Array, note: str
+    ) -> list[Comparison]:
+        """Chi-square of those slices."""
+        inside = self.inside(profile.edges)
+        weights = measured.weights
+        weights = weights if weights.ndim == 1 else weights[:, inside]
+        some = Estimate(measured.value[inside], measured.residuals[:, inside], weights)
+        return profile.chi_square(some, expected[inside], note)
 
     @property
     def steady(self) -> bool:
@@ -47,9 +65,10 @@ class DensityInSlices(Slices):
     """The same everywhere across an axis that repeats; between plates that of an ideal gas in
     gravity, whose centres come as near as a radius."""
 
-    answers = "density-profile"
+    answers, width, label = "density-profile", 2, "number density"
 
     def __init__(self, find: Find, case: Case, observable: Any) -> None:
+        refuse_molecules(observable.of)
         super().__init__(find, case, observable)
         section, d = case.spheres, case.box.dimension
         counts, scale = section.counts(case.box), section.scale(case.box)
@@ -60,6 +79,29 @@ class DensityInSlices(Slices):
             if observable.kind is None or observable.kind in (k + 1, kind.name)
         ]
         self.dimension = d
+
+    def sums(self, profile: ProfileAccumulator, spheres: RunningSpheres) -> Array:
+        """Number and sum of m v^2 (2, bins)."""
+        number, _, _, energy = profile.moments(spheres)
+        return np.stack([number, energy])
+
+    def compared(self, profile: ProfileAccumulator, density: Estimate, sums: Array) -> Compared:
+        """The profile, compared as a whole, and beside gravity the mean place."""
+        number, energy = sums.sum(axis=1)
+        kT = float(energy / number) / self.dimension if number > 0 else np.nan
+        expected, found = self.expected(profile.edges, kT), list[Comparison]()
+        if expected is not None and profile.blocks.count:
+            note = self.note(expected)
+            if np.ptp(expected) > 0:
+                share = profile.centres / number
+                place, error = density.scalar(share @ density.value, share)
+                wanted = float(profile.centres @ expected / expected.sum())
+                what = f"mean {profile.observable.axis}, by slices"
+                found.append(Comparison(what, place, error, wanted, "a", note))
+            if not note:
+                found += self.chi_square(profile, density, expected, "against theory")
+        law = "" if expected is None else self.legend()
+        return Compared(expected, law, found, extra={"edges": profile.edges.copy()})
 
     def expected(self, edges: Array, kT: float) -> Array | None:
         """Number per volume in each slice, at a mean m v^2 along an axis."""
@@ -116,6 +158,28 @@ class FlowInSlices(Slices):
 
     answers = "velocity-profile"
 
+    def __init__(self, find: Find, case: Case, observable: Any) -> None:
+        super().__init__(find, case, observable)
+        along = observable.component or ("y" if observable.axis == "x" else "x")
+        self.component = case.box.index(along, "component")
+
+    def warnings(self) -> Iterator[str]:
+        """Nothing: spheres may be at rest along every axis."""
+        yield from ()
+
+    def compared(self, profile: ProfileAccumulator, velocity: Estimate, sums: Array) -> Compared:
+        """The profile beside rest or the mean velocity, by the sums (2, bins) of momentum and
+        mass."""
+        momentum, mass = profile.blocks.sums()[0].sum(axis=(0, 2))
+        level = self.expected(self.component, float(momentum / mass) if mass > 0 else 0.0)
+        if np.isnan(level):
+            return Compared(None, "", [])
+        expected, found = np.full(profile.bins, level), list[Comparison]()
+        filled = np.isfinite(velocity.value[self.inside(profile.edges)]).all()
+        if filled and profile.blocks.count:
+            found = self.chi_square(profile, velocity, expected, "against the line")
+        return Compared(expected, "rest" if level == 0 else "drift", found)
+
     def expected(self, component: int, found: float) -> float:
         """The velocity along an axis: 0, the mean `found` where nothing changes it, or nan."""
         if not (self.steady and still_walls(self.case)):
@@ -142,6 +206,8 @@ class TemperatureInSlices(Slices):
     """The same everywhere in equilibrium."""
 
     answers = "temperature-profile"
+    across = None  # no flow of spheres is expected to vary
+    fewest = 20  # about their own mean few spheres are colder than they are
 
     @property
     def rests(self) -> bool:
@@ -154,3 +220,17 @@ class TemperatureInSlices(Slices):
             return math.nan, False
         known = not math.isnan(self.state.kT)
         return (self.state.kT if known else found), known
+
+    def compared(
+        self, profile: ProfileAccumulator, temperature: Estimate, mean: Estimate, number: Array
+    ) -> Compared:
+        """The temperature (bins,) and its mean over all, by the number (bins,) of sightings."""
+        value, error, law = float(mean.value), float(mean.error), "the same everywhere"
+        level, known = self.expected(value)
+        error = 0.0 if error < KEPT * value else error  # collisions keep it
+        told = level if known else math.nan
+        found = [Comparison("mean temperature", value, error, told, "m a^2/tau^2")]
+        expected = None if math.isnan(level) else np.full(profile.bins, level)
+        if expected is not None:
+            found += self.chi_square(profile, temperature, expected, "against theory")
+        return Compared(expected, law, found if profile.blocks.count else [])

@@ -12,6 +12,7 @@ from mesokit import theory
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.cooling import rate
 from mesokit.method.spheres.common.expected.slices import Find
+from mesokit.method.spheres.common.groups import ids_of_kind
 from mesokit.method.spheres.common.made import made
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ class VelocitiesOfSpheres:
         self.dimension = case.box.dimension
         given = observable.component
         self.axis = case.box.index(given, "component") if given else 0
-        self.group = observable.group(case)
+        self.group = ids_of_kind(case, observable.kind)
         if len(self.group) < 3:
             raise CaseError(
                 f"velocity-distribution: {len(self.group)} spheres; expected 3 at least"

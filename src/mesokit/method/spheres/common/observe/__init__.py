@@ -1,4 +1,4 @@
-"""What is measured of spheres and disks. A new observable is a file here."""
+"""What is measured of spheres and disks of both methods. A new observable is a file here."""
 
 from __future__ import annotations
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
@@ -12,25 +14,22 @@ from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.molecules import KIND, Group, free_bond, kind_of
+from mesokit.method.mpcd.expected.whose import default_of, groups_of, strangers
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
-from mesokit.observe.shared.scatter_of_waves import scatter_of_waves
-from mesokit.observe.shared.wave_vectors import CHUNK, amplitudes, reachable, wave_shells
-from mesokit.observe.shared.whose import (
-    OF,
-    at_rest,
-    default_of,
-    groups_of,
-    periodic_all_over,
-    strangers,
-)
+from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 LARGEST = 2 * math.pi  # wave number unless it is given: waves as long as a cell
+MOST = 2**20  # wave vectors of which shells are made
+CHUNK = 2**20  # phases at once
+FEWEST = 12  # degrees of freedom that the scatter of waves is taken from
+CURVE = 2  # degree of the polynomial that S is taken for where they are
 
 
 @component
@@ -115,7 +114,7 @@ class StructureFactorAccumulator(BlockAccumulator):
         if self.of == "chains":
             beads = self.beads
             r = fluid.whole_positions(beads.ravel()).reshape(*beads.shape, -1)
-            found, number = amplitudes(r, self.waves), beads.shape[1]
+            found, number = wave_sums(r, self.waves), beads.shape[1]
         else:
             found = self.altogether(fluid)[None]
             number = sum(group.number * group.length for group in self.groups)
@@ -147,7 +146,7 @@ class StructureFactorAccumulator(BlockAccumulator):
         found, step = np.zeros(len(self.waves), complex), max(1, CHUNK // len(self.waves))
         r = fluid.positions(group.beads().ravel())
         for start in range(0, len(r), step):
-            found += amplitudes(r[None, start : start + step], self.waves)[0]
+            found += wave_sums(r[None, start : start + step], self.waves)[0]
         return found
 
     def pool(self, other: StructureFactorAccumulator) -> None:
@@ -192,8 +191,7 @@ class StructureFactorAccumulator(BlockAccumulator):
 
     def expected(self) -> Array | None:
         """That of one molecule on the average, where molecules do not know of one another."""
-        kept = at_rest(self.case) and strangers(self.case, self.of, self.groups)
-        if not kept:
+        if not strangers(self.case, self.of, self.groups):
             return None
         lengths, place = np.unique(np.round(self.lengths, 12), return_inverse=True)
         total, beads = np.zeros(len(lengths)), 0
@@ -232,3 +230,95 @@ class StructureFactorAccumulator(BlockAccumulator):
                 bar = max(bar, float(np.sqrt(((weight[0] * error) ** 2).sum())))
             found.append(Comparison("S(q) over theory", value, bar, 1.0))
         return found
+
+
+def reachable(size: Sequence[float]) -> float:
+    """The length of a wave vector up to which there are MOST in a box."""
+    d = len(size)
+    ball = math.pi if d == 2 else 4.0 / 3.0 * math.pi
+    each = math.prod(2 * math.pi / length for length in size)
+    return float((2 * MOST * each / ball) ** (1 / d))
+
+
+def wave_shells(size: Sequence[float], largest: float, shells: int, most: int) -> list[Array]:
+    """Wave vectors (K, d) of each of so many shells of equal width, but for those that are empty.
+
+    Of q and -q there is one. At most so many in a shell, evenly spread over all.
+
+    >>> [len(shell) for shell in wave_shells([10, 10], 1.0, 3, 50)]  # 0.63; 0.89
+    [2, 2]
+    """
+    longest = [int(largest * length / (2 * math.pi)) for length in size]
+    axes = [np.arange(0 if k == 0 else -n, n + 1) for k, n in enumerate(longest)]
+    whole = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(size))
+    whole = whole[_first_half(whole)]
+    vectors = 2 * np.pi * whole / np.array(size, float)
+    length = np.sqrt((vectors**2).sum(axis=1))
+    place = np.ceil(length / largest * shells - 1e-9).astype(int) - 1
+    order = np.argsort(place, kind="stable")
+    bounds = np.searchsorted(place[order], np.arange(shells + 1))
+    members = (order[low:high] for low, high in itertools.pairwise(bounds))
+    return [vectors[one[spread_ids(most, len(one))]] for one in members if len(one)]
+
+
+def wave_sums(r: Array, waves: Array) -> NDArray[np.complex128]:
+    """Sum over the beads of e^(-i q r), (molecules, K), of molecules (molecules, length, d)."""
+    found = np.empty((len(r), len(waves)), complex)
+    step = max(1, CHUNK // (r.shape[1] * len(waves)))
+    for start in range(0, len(r), step):
+        phase, here = r[start : start + step] @ waves.T, slice(start, start + step)
+        found.real[here] = np.cos(phase).sum(axis=1)  # in half the time of a complex exponential
+        found.imag[here] = -np.sin(phase).sum(axis=1)
+    return found
+
+
+def _first_half(whole: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Those whose first component that is not 0 is above 0."""
+    chosen, zero = np.zeros(len(whole), bool), np.ones(len(whole), bool)
+    for along in whole.T:
+        chosen |= zero & (along > 0)
+        zero &= along == 0
+    return chosen
+
+
+def scatter_of_waves(each: Array, lengths: Array, members: NDArray[np.int64]) -> Array:
+    """Standard error (shells,) of the mean over the waves of each shell; nan of too few waves.
+
+    Waves are independent of one another, and neighbours scatter alike about S, a smooth function
+    of q: by all of it if a run is short against the time in which they decay.
+
+    Parameters: means `each` (runs, waves) over the time of each run; `lengths` (waves,) of the
+    waves, shell by shell; `members` (shells,), how many are in each.
+
+    >>> rng = np.random.default_rng(1)
+    >>> lengths = np.repeat([1.0, 2.0, 3.0], 400)
+    >>> once = rng.exponential(size=(1, 1200))  # as |rho|^2 of a single sample is
+    >>> error = scatter_of_waves(once, lengths, np.array([400, 400, 400]))
+    >>> bool(np.all(abs(error * 400**0.5 - 1) < 0.25))
+    True
+    """
+    ends, (runs, _) = np.cumsum(members), each.shape
+    starts, last = ends - members, len(members) - 1
+    found = np.full(len(members), np.nan)
+    # Shell by shell: neighbours on both sides are added until there are enough degrees of freedom.
+    # A polynomial in q takes the trend of S away before.
+    for place in range(len(members)):
+        for reach in range(len(members)):
+            low, high = max(0, place - reach), min(last, place + reach)
+            near = slice(int(starts[low]), int(ends[high]))
+            known = len(np.unique(np.round(lengths[near], 9)))
+            degree = min(CURVE, known - 1)
+            freedom = runs * (near.stop - near.start) - degree - 1
+            if freedom >= FEWEST:
+                away = _off_the_curve(each[:, near], lengths[near], degree)
+                variance = (away**2).sum() / freedom
+                found[place] = np.sqrt(variance / (members[place] * runs))
+                break
+    return found
+
+
+def _off_the_curve(each: Array, lengths: Array, degree: int) -> Array:
+    """What is left (runs, waves) when the best polynomial is taken away."""
+    powers = np.vander((lengths - lengths.mean()) / lengths.mean(), degree + 1)
+    mean = each.mean(axis=0)
+    return np.asarray(each - powers @ np.linalg.lstsq(powers, mean, rcond=None)[0])

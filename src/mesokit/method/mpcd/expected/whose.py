@@ -1,0 +1,44 @@
+"""Which particles or beads are looked at, and whether others matter to them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of
+from mesokit.method.mpcd.molecule import FLUID
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+def default_of(case: Case, of: str | None) -> str:
+    """What was asked for, or else beads where there are any."""
+    if of is not None:
+        return of
+    beads = case.solutes is not None or case.fluid.molecule is not None
+    return "beads" if beads else "particles"
+
+
+def groups_of(case: Case, of: str, kind: int | str | None = None) -> list[Group]:
+    """Those of a kind, or all. Raises CaseError if there are none.
+
+    Beads of all kinds of solutes are a group for each, particles of all species are one.
+    """
+    if kind is None and of != "particles" and case.solutes is not None:
+        kinds = range(1, len(case.solutes.polymers) + 1)
+        return [group_of(case, of, number) for number in kinds]
+    return [group_of(case, of, kind)]
+
+
+def strangers(case: Case, of: str, groups: list[Group]) -> bool:
+    """True if particles, or molecules as wholes, are independent of all others."""
+    solutes = case.solutes
+    if case.walls or setting.driven(case) or setting.gathered(case):
+        return False
+    if solutes is not None and solutes.solvent_pair is not None:
+        return False
+    if of == "particles" or solutes is None:
+        return True
+    beads = [kind for kind in (kind_of(case, group) for group in groups) if kind != FLUID]
+    return all(solutes.ideal(solutes.index_of(kind)) for kind in beads)
