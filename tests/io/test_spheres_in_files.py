@@ -61,8 +61,8 @@ def test_the_trajectory_has_sizes_masses_and_spins(ended):
     assert frames.species.tolist() == [0] * 20 + [1] * 10
     with h5py.File(ended.directory.data_file) as file:
         group = file["particles/spheres"]
-        assert group["radius"].shape == (30,) and group["radius"].attrs["reduced_unit"] == "a"
-        assert group["spin/value"].attrs["reduced_unit"] == "1/tau"
+        assert group["radius"].shape == (30,) and group["radius"].attrs["reduced_unit"] == "length"
+        assert group["spin/value"].attrs["reduced_unit"] == "1/time"
         np.testing.assert_array_equal(group["spin/value"][-1], spins_of(engine))
 
 

@@ -130,7 +130,7 @@ def test_wall_slip_is_read_off(make_case):
         "slip at the walls"
     ]
     assert abs(slip.measured - 100 * 0.2 / 1.2) < 4 * slip.error
-    assert slip.error < 3
+    assert slip.error < 4  # of 25 relaxation times
 
 
 def test_error_of_the_fit_knows_that_bins_rise_and_fall_together(make_case):

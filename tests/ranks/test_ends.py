@@ -191,11 +191,14 @@ def test_a_particle_of_one_rank_is_too_fast(folder, mpiexec):
 
 
 def test_a_mistake_in_one_rank(folder, mesokit):
-    """Of the program: it says where, and who."""
+    """Of an imported module: it says where, and on which rank."""
     faulty(folder, 1, "return 1 / 0", *ENGINE)
     ranks = mesokit("--import", "faulty", "run", "endless.toml", "--output", "out", "--ranks", "2")
     assert ranks.end() == 1
-    one_message(ranks, "mesokit: rank 1: Traceback .*")
+    one_message(
+        ranks,
+        r"mesokit: error: rank 1: line \d+ of .*faulty\.py: ZeroDivisionError: division by zero",
+    )
     assert ranks.err.count("ZeroDivisionError: division by zero") == 1
 
 

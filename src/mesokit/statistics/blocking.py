@@ -62,7 +62,7 @@ def correlated(
 
     >>> error, pieces = correlated(np.repeat([1.0, -1.0, -1.0, 1.0], 8) / 32, np.ones(32))
     >>> round(float(error / independent_error(np.tile([1.0, -1.0], 16) / 32, np.ones(32))), 1)
-    3.2
+    2.9
     """
     residuals, weights, number = _prepared(residuals, weights)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -72,14 +72,15 @@ def correlated(
         times = np.full(variance.shape, 0.5)  # integrated correlation, in blocks
         window, growing = np.zeros(variance.shape), variance > 0
         for lag in range(1, len(residuals) // FEWEST_WINDOWS + 1):
-            pairs = (weights[lag:] * weights[:-lag]).sum(axis=0)
-            products = (residuals[lag:] * residuals[:-lag]).sum(axis=0)
-            share = np.where(pairs > 0, products * of_blocks / pairs, 0.0) / variance
+            pairs = (weights[lag:] * weights[:-lag]).sum(axis=0) / of_blocks  # over those of lag 0
+            products = (residuals[lag:] * residuals[:-lag]).sum(axis=0) / variance
+            growing &= (pairs > 0) & (lag * FEWEST_WINDOWS <= number)
             if lag == 1:
-                growing &= share > 1 / np.sqrt(number)
-            times, window = np.where(growing, times + share, times), window + growing
+                growing &= products / pairs > 1 / np.sqrt(pairs * number)
+            times = np.where(growing, times + products / pairs, times)
+            window += growing
             decay = DECAY / np.log((2 * times + 1) / (2 * times - 1))
-            growing &= np.exp(-lag / decay) > decay / np.sqrt(lag * number)
+            growing &= np.exp(-lag / decay) > decay / np.sqrt(lag * pairs * number)
             if not growing.any():
                 break
         pieces = (number - 1 - 2 * window) / np.fmax(2 * times, 1.0)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 MATTERS = 0.5  # of the standard error: a missing part that is larger is told
+MUCH = 0.05  # of the speed: a missing part that is larger is told, whatever the error
 DRIFTS = 5.0  # standard errors between both halves of the samples: the flow still changes
 
 
@@ -97,10 +98,8 @@ def _of_theory(comparison: Comparison) -> list[str]:
 
 
 def _is_off(comparison: Comparison, share: float) -> bool:
-    """Whether the part that is missing would be seen; of few samples, whose error is unknown,
-    whether it is more than a twentieth."""
+    """Whether the part that is missing is more than a twentieth, or would be seen beside the error
+    bar. In a flow that builds up the error bar grows with what is missing."""
     expected = comparison.expected
     missing = share * abs(comparison.measured if math.isnan(expected) else expected)
-    if not comparison.error > 0:
-        return share > 0.05 and missing > 0
-    return missing > MATTERS * comparison.error
+    return missing > MATTERS * comparison.error or (share > MUCH and missing > 0)

@@ -180,6 +180,9 @@ def sum_error(parts: Array) -> float:
 
 
 def ratio(sums: Array) -> tuple[float, float]:
-    """Ratio of the first to the second of two sums (parts, 2), and its standard error."""
-    found: Estimate = of_ratio(sums[:, 0], sums[:, 1])
+    """Ratio of the first to the second of two sums (parts, 2), and its standard error.
+
+    Events that end early are short ones, and later parts of the time take back what these add.
+    """
+    found: Estimate = of_ratio(sums[:, 0], sums[:, 1])._replace(falling=True)
     return float(found.value), float(found.error)
