@@ -173,8 +173,9 @@ def test_chains_have_their_time_and_weissenberg_number(make_case, length, rate):
     rows, times = {}, {}
     for solvent in ("fluid", "random"):
         chains = Solutes((Polymer(2, length=length), Polymer(3)), bond=bond, solvent=solvent)
-        case = make_case((20, 20, 20), thermostat=MaxwellBoltzmann(), solutes=chains,
-                         **({"shear_rate": rate} if rate and solvent == "fluid" else {}))  # fmt: skip
+        shear = {"shear_rate": rate} if rate and solvent == "fluid" else {}
+        bath = MaxwellBoltzmann()
+        case = make_case((20, 20, 20), thermostat=bath, solutes=chains, **shear)
         rows[solvent] = {name: (value, word) for name, value, word in summary(case).rows}
         times[solvent] = longest_relaxation(case)
     assert times["fluid"][1] == "Zimm" and times["random"][1] == "Rouse"
