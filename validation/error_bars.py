@@ -23,6 +23,7 @@ from common import ROOT, RUNS, SHORT, Page, sources
 
 from mesokit import Case, Simulation
 from mesokit.case.checks import is_offered
+from mesokit.case.methods import templates
 from mesokit.case.toml import override, parse, read
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.observe import OBSERVABLES as OF_MPCD
@@ -37,7 +38,6 @@ from mesokit.statistics import spread_ids
 SEEDS = 4 if SHORT else 16
 MOST = 200  # values of a curve or map that are looked at
 LEAST, LARGEST = 0.85, 1.15  # asked of a method in the mean
-TEMPLATES = ROOT / "src" / "mesokit" / "method"
 
 
 class Scene(NamedTuple):
@@ -54,7 +54,7 @@ class Scene(NamedTuple):
 
 def template(method: str, name: str = "") -> Path:
     """The file of a template, which has the method's name unless said."""
-    return TEMPLATES / method.replace("-", "_") / "templates" / f"{name or method}.toml"
+    return Path(str(templates()[name or method.replace("-", "_")]))
 
 
 SCENES = (

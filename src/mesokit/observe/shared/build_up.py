@@ -8,7 +8,7 @@ import math
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from mesokit.observe.shared.caveats import LOWER_BOUND, STEADY
-from mesokit.observe.shared.short_run import bounded
+from mesokit.observe.shared.short_run import CHI_SQUARE, bounded
 from mesokit.seam.in_units import in_units
 from mesokit.seam.method import BuildUp, method_of
 from mesokit.seam.observable import Accumulator
@@ -71,7 +71,8 @@ def _too_early(accumulator: Accumulator, result: Result, case: Case, every: int)
 
 
 def _drift(accumulator: Accumulator, result: Result) -> str:
-    """That both halves of the samples differ by more than they scatter."""
+    """That both halves of the samples differ by more than they scatter. A chi-square is of that
+    scatter itself, and is left out."""
     blocks = getattr(accumulator, "blocks", None)
     halves = []
     for part in blocks.halves() if blocks is not None else ():
@@ -80,7 +81,8 @@ def _drift(accumulator: Accumulator, result: Result) -> str:
         halves.append({c.what: c for c in half.result().comparisons})
     first, second = halves or ({}, {})
     known = [c.what for c in result.comparisons if math.isfinite(c.measured + c.expected)]
-    for what in [what for what in known if what in first and what in second]:
+    both = [what for what in known if what in first and what in second and CHI_SQUARE not in what]
+    for what in both:
         one, other = first[what], second[what]
         apart = abs(one.measured - other.measured)
         if apart > DRIFTS * math.hypot(one.error, other.error) > 0:
