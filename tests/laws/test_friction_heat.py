@@ -29,17 +29,17 @@ def slit(timestep, push, steps, warmup):
 
 @pytest.mark.parametrize(
     ("timestep", "push", "steps"),
-    [(0.1, 0.0193, 24_000), (0.1, 0.0386, 12_000), (0.5, 0.0091, 12_000)],
+    [(0.1, 0.0193, 48_000), (0.1, 0.0386, 12_000), (0.5, 0.0091, 12_000)],
 )
 def test_plates_with_virtual_particles_are_as_warm_as_theory_says(timestep, push, steps):
-    """Errors are 1 to 3 % of the rise. Without the jump at the plates theory would have 0.7 of
+    """Errors are 1 to 2 % of the rise. Without the jump at the plates theory would have 0.7 of
     it at timestep 0.1, and 0.15 at 0.5."""
     case = slit(timestep, push, steps, warmup=3000)
     simulation = Simulation(case, threads=1)
     simulation.run()
     result = simulation["temperature-profile"]
     found, rise = result["mean temperature"], heating(case, 1).steady
-    assert 0.1 < rise < 0.5 and found.error < 0.03 * rise
+    assert 0.1 < rise < 0.5 and found.error < 0.02 * rise
     assert abs(found.measured - found.expected) < 3.5 * found.error + NEAR * rise, found
     # and where it is warm: the cells at the plates too
     error = abs(result.value - result.expected) - 3.5 * result.error

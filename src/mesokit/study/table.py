@@ -98,12 +98,13 @@ def scattered(
     """How one number of several runs scatters: the standard error of its mean, and chi-square.
 
     Weights of the mean are the lengths of the runs. The error bars of the runs are estimates that
-    run low where the value does, and would pull the mean.
+    run low where the value does, and would pull the mean. Chi-square is about the mean that is
+    weighted by them, which makes it least.
 
     >>> runs = [Comparison("slip", 1.0, 0.3, 0.9), Comparison("slip", 2.0, 0.4, 0.9)]
     >>> spread, seeds = scattered(runs, [100, 100])
     >>> spread, round(seeds.chi2, 3)
-    (0.5, 4.34)
+    (0.5, 4.0)
     """
     n = len(each)
     if n < 2:
@@ -112,8 +113,10 @@ def scattered(
     values, errors = (np.array([getattr(c, name) for c in each]) for name in ("measured", "error"))
     mean = float(share @ values)
     spread = float(np.sqrt(share**2 @ (values - mean) ** 2 * n / (n - 1)))
-    known = np.isfinite(values).all() and np.isfinite(errors).all() and errors.min() > 0
-    return spread, chi_square(values, np.full(n, mean), errors, fitted=1) if known else None
+    if not (np.isfinite(values).all() and np.isfinite(errors).all() and errors.min() > 0):
+        return spread, None
+    nearest = np.average(values, weights=errors**-2.0)
+    return spread, chi_square(values, np.full(n, nearest), errors, fitted=1)
 
 
 def dataframe(rows: Sequence[Pooled]) -> Any:
