@@ -21,7 +21,9 @@ from mesokit import (
     MoleculeSize,
     NoThermostat,
     Plates,
+    Polymer,
     Run,
+    Solutes,
     StepStrain,
     Stress,
     Uniform,
@@ -30,6 +32,7 @@ from mesokit import (
 )
 from mesokit.method.mpcd.derived import derive
 from mesokit.method.mpcd.expected.heating import temperature_rise
+from mesokit.method.mpcd.expected.molecules import longest_relaxation
 from mesokit.method.mpcd.summary import summary
 
 PUSH = {"force": Uniform([0.02, 0])}
@@ -150,17 +153,41 @@ def test_the_warm_up_of_sheared_molecules_is_three_relaxation_times(make_case):
         case = make_case((8, 9), density=9, thermostat=MaxwellBoltzmann(), molecule=trimer,
                          observe=[Stress()], **shear)  # fmt: skip
         found = derive(dataclasses.replace(case, run=Run(steps=400, warmup=warmup)))
-        return found.relaxation_time, [text for text in found.warnings if "warmup" in text]
+        return found.relaxation, [text for text in found.warnings if "warmup" in text]
 
-    time, (text,) = said(0, shear_rate=0.1)
+    (time, name), (text,) = said(0, shear_rate=0.1)
     friction = (
         1 / theory.transport("srd", 2, 9, 0.1, angle=130, thermostat="maxwell-boltzmann").diffusion
     )
     times = theory.rouse_times(theory.linear_modes(3), friction, K=0.4)
-    assert time == pytest.approx(times.mode[0], rel=1e-3)
+    assert time == pytest.approx(times.mode[0], rel=1e-3) and name == "Rouse"
     steps = int(3 * time / 0.1) + 1
     assert f"about {steps} steps" in text
     assert not said(steps, shear_rate=0.1)[1] and not said(0)[1]
+
+
+@pytest.mark.parametrize(("length", "rate"), [(6, 0.02), (12, 0.0)])
+def test_chains_have_their_time_and_weissenberg_number(make_case, length, rate):
+    """By Zimm in a fluid, and by Rouse where the solvent is random."""
+    bond = Harmonic(K=1.5)
+    rows, times = {}, {}
+    for solvent in ("fluid", "random"):
+        chains = Solutes((Polymer(2, length=length), Polymer(3)), bond=bond, solvent=solvent)
+        shear = {"shear_rate": rate} if rate and solvent == "fluid" else {}
+        bath = MaxwellBoltzmann()
+        case = make_case((20, 20, 20), thermostat=bath, solutes=chains, **shear)
+        rows[solvent] = {name: (value, word) for name, value, word in summary(case).rows}
+        times[solvent] = longest_relaxation(case)
+    assert times["fluid"][1] == "Zimm" and times["random"][1] == "Rouse"
+    friction = (
+        1 / theory.transport("srd", 3, 10, 0.1, angle=130, thermostat="maxwell-boltzmann").diffusion
+    )
+    rouse = theory.rouse_times(theory.linear_modes(length), friction, K=1.5).mode[0]
+    assert times["random"][0] > 0.5 * rouse > 0.5 * times["fluid"][0]
+    assert "slowest mode, Zimm" in rows["fluid"]["relaxation time"][1]
+    assert ("Weissenberg number" in rows["fluid"]) is bool(rate)
+    number = float(rows["fluid"].get("Weissenberg number", ("0",))[0])
+    assert number == pytest.approx(rate * times["fluid"][0], rel=1e-3)
 
 
 def test_heat_in_a_round_pipe_is_the_work_of_the_force(make_case):

@@ -69,6 +69,8 @@ def test_a_film_and_its_progress(capsys: Captured) -> None:
     captured = capsys.readouterr()
     assert captured.out.split() == ["run/flow-quiver.mp4"]
     assert captured.err.startswith("drawing: 3 frames\n")
+    assert "3 frames last 0.6 s; --fps 1 slows the film down" in captured.err
+    assert ends("animate", "run", "--fps", "1") == 0 and "slows" not in capsys.readouterr().err
     assert count_frames_and_secs("run/flow-quiver.mp4")[0] == 3
     assert ends("animate", "run", "--output", "film.gif", "--quiet") == 0
     captured = capsys.readouterr()

@@ -300,7 +300,7 @@ class TestFreeTimes:
         times, around = observed(run)
         (contact,) = comparisons(around, "g at contact")
         for found in (times.comparisons[0], contact):
-            assert "far from freezing" in found.note and not np.isfinite(found.deviation)
+            assert "freezing is near" in found.note and not np.isfinite(found.deviation)
 
     def test_who_asks_changes_no_bit(self):
         asked, plain = (

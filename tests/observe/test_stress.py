@@ -7,11 +7,16 @@ import pytest
 
 from mesokit import (
     WCA,
+    Box,
+    Case,
     Conservation,
     DynamicModuli,
+    Fluid,
     Harmonic,
     MaxwellBoltzmann,
     Plates,
+    Run,
+    Simulation,
     Stress,
     StressAutocorrelation,
     Surface,
@@ -273,3 +278,19 @@ def test_modulus_of_molecules_stands_beside_rouse(make_case):
     stored = 5 * (w * tau) ** 2 / (1 + (w * tau) ** 2)
     np.testing.assert_allclose(result.extra["storage_theory"], stored)
     np.testing.assert_allclose(result.extra["loss_theory"], w * eta + stored / (w * tau))
+
+
+@pytest.mark.parametrize(("rate", "known"), [(1e-3, True), (0.5, False)])
+def test_shear_adds_to_the_pressure_of_a_fluid_at_rest(rate, known):
+    """By the square of the shear rate times the time that velocities are remembered."""
+    case = Case(
+        run=Run(steps=200, warmup=20, seed=4),
+        box=Box((8, 8, 8), shear_rate=rate),
+        fluid=Fluid(density=10, timestep=0.2, thermostat=MaxwellBoltzmann()),
+        observe=[Stress()],
+    )
+    simulation = Simulation(case)
+    simulation.run()
+    pressure = simulation["stress"]["pressure"]
+    assert pressure.approximate is not known and pressure.expected == 10
+    assert (abs(pressure.measured - 10) > 5 * pressure.error) is not known

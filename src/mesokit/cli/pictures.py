@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 KIND = "quiver, streamlines, particles, density, speed, vorticity, four, disks or flock"
 FILE = click.Path(dir_okay=False, path_type=Path)
+SHORT, LONG = 2.0, 5  # seconds: a film that lasts less is hardly seen; what it is slowed down to
 
 
 def _ranges(context: click.Context, option: click.Parameter, text: str | None) -> Any:
@@ -229,4 +230,7 @@ def animate(
     output = output or files.directory.flow_file(kind, ".mp4")
     film = files.animate(output, kind, fps=fps, progress=FilmReporter(quiet), **choices)
     if not quiet:
+        if (lasts := film.frames / fps) < SHORT:
+            slower = max(1, film.frames // LONG)
+            say(f"{film.frames} frames last {lasts:.2g} s; --fps {slower} slows the film down")
         click.echo(film.path)

@@ -116,7 +116,7 @@ class Comparison:
             )
         if math.isfinite(self.deviation):
             text += f": {self.deviation:+.1f} standard errors"
-            if math.isfinite(self.percent):
+            if math.isfinite(self.percent) and self.error < abs(self.expected):
                 text += f", {in_percent(self.percent)}"
         elif self.approximate and math.isfinite(self.percent):
             text += f": {two_digits(self.percent, sign='+')} %"

@@ -49,7 +49,7 @@ def origins(
         heat = Origin(source("(7)", GOMPPER), full)
     return {
         "mean_free_path": Origin("definition, timestep sqrt(kT/m)", "always"),
-        "viscosity": Origin("sum of both parts", f"{full}, within 1 to 5 %{flat}"),
+        "viscosity": Origin("sum of both parts", f"{full}, within 1 to 7 %{flat}"),
         "viscosity_kinetic": Origin(
             source("(1)", published), f"{full}, {short} 10 to 30 % low, in 2D with +a half{once}"
         ),

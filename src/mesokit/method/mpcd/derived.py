@@ -13,7 +13,7 @@ from mesokit.case.trajectory import stored_bytes
 from mesokit.geometry.shape.plates import Plates
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.expected.heating import heating
-from mesokit.method.mpcd.expected.molecules import longest_rouse_time
+from mesokit.method.mpcd.expected.molecules import longest_relaxation
 from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 from mesokit.method.mpcd.warnings import cautions
 from mesokit.processes.cores import usable_cores
@@ -108,7 +108,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         steady_time=_steady_time(case, across, nu)
         if nu and (speed or bound) and builds_up
         else None,
-        relaxation_time=longest_rouse_time(case),
+        relaxation=longest_relaxation(case),
         heating=heated[0] if heated else None,
         heating_bound=heated is not None and heated[1],
         seconds=case.particles * steps / rate + bead_seconds + _observe_seconds(case),

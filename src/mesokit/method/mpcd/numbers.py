@@ -25,8 +25,8 @@ class Derived(Shown):
     of the empty channel where obstacles stand in the flow and nobody knows its speed beforehand,
     `flow_size` the size across it, `reynolds` both over the viscosity (in a round pipe the mean
     velocity, as is the custom), `mach` the largest speed over that of sound; `steady_time` is the
-    time in which the flow comes within 1/e of its steady state, `relaxation_time` the longest of
-    the molecules of the fluid, by Rouse.
+    time in which the flow comes within 1/e of its steady state, `relaxation` the longest
+    relaxation time of all molecules and the theory that it is of.
     `heating` is the relative rise of the temperature by friction at the end of the run,
     `heating_bound` says that walls keep it lower.
     `substeps` are those of the fluid's molecules, or else of solutes. `seconds` and `memory`
@@ -45,7 +45,7 @@ class Derived(Shown):
     reynolds: float | None
     mach: float | None
     steady_time: float | None
-    relaxation_time: float | None
+    relaxation: tuple[float, str] | None
     heating: float | None
     heating_bound: bool
     seconds: float

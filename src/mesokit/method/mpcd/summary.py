@@ -44,9 +44,12 @@ def _particle_rows(case: Case, numbers: Derived) -> list[Row]:
     if molecule is not None:
         number_of = f"{numbers.particles // molecule.length:,}".replace(",", " ")
         rows.append(("molecules", number_of, f"{molecule.topology}s of {molecule.length}"))
-    if numbers.relaxation_time is not None:
-        steps = f"slowest mode, Rouse; {round(numbers.relaxation_time / case.fluid.timestep)} steps"
-        rows.append(("relaxation time", number(numbers.relaxation_time, "tau"), steps))
+    if numbers.relaxation is not None:
+        time, name = numbers.relaxation
+        steps = f"slowest mode, {name}; {round(time / case.fluid.timestep)} steps"
+        rows.append(("relaxation time", number(time, "tau"), steps))
+        if rate := abs(case.box.steady_rate):
+            rows.append(("Weissenberg number", number(rate * time), "shear rate x relaxation time"))
     if numbers.substeps is not None:
         how = molecule.propagation if molecule is not None else "verlet"
         rows.append(("sub-steps", str(numbers.substeps), how))

@@ -282,10 +282,10 @@ def _net_pull(case: Case) -> Iterator[str]:
 
 def _start_of_shear(case: Case, numbers: Derived) -> Iterator[str]:
     """Molecules start at rest, and take a few relaxation times to follow the shear."""
-    time, start = numbers.relaxation_time, case.fluid.start.run
-    if time is None or not (case.box.steady_rate or case.box.oscillation):
+    start = case.fluid.start.run
+    if numbers.relaxation is None or not (case.box.steady_rate or case.box.oscillation):
         return
-    wait = math.ceil(3 * time / case.fluid.timestep)
+    wait = math.ceil(3 * numbers.relaxation[0] / case.fluid.timestep)
     if case.run.warmup < wait and case.run.steps and case.observe and start is None:
         yield (
             f"run.warmup = {case.run.warmup}: molecules need about {wait} steps (3 relaxation "

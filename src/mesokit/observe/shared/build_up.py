@@ -7,7 +7,7 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
-from mesokit.observe.shared.caveats import LOWER_BOUND
+from mesokit.observe.shared.caveats import LOWER_BOUND, STEADY
 from mesokit.observe.shared.short_run import CHI_SQUARE, bounded
 from mesokit.seam.in_units import in_units
 from mesokit.seam.method import BuildUp, method_of
@@ -95,8 +95,7 @@ def _of_theory(comparison: Comparison) -> list[str]:
     """What its note says of the theory, but that the flow is steady; error bars of a flow that
     builds up are another matter."""
     parts = comparison.note.split("; ")
-    told = ("steady", "steady flow", "")
-    return [part for part in parts if part not in told and not part.startswith(LOWER_BOUND)]
+    return [one for one in parts if one and one not in STEADY and not one.startswith(LOWER_BOUND)]
 
 
 def _is_off(comparison: Comparison, share: float) -> bool:

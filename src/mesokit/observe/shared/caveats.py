@@ -9,6 +9,7 @@ from mesokit.seam.named import keyed
 from mesokit.seam.result import NOT_STEADY, Comparison, Result
 
 ROUGH, LOWER_BOUND = "approximate", "error bar is a lower bound"
+STEADY = ("steady", "steady flow")  # what theory is of
 FEW_SAMPLES = "samples, which may be correlated"
 
 
@@ -31,6 +32,8 @@ def _with(pooled: Comparison, notes: Sequence[str]) -> Comparison:
 
     >>> _with(Comparison("slip", 0.1, 0.2), ["not steady: a; b", "not steady: c"]).note
     'not steady: a'
+    >>> _with(Comparison("slip", 0.1, 0.2, note="steady flow"), ["not steady: a; b"]).note
+    'not steady: a'
     """
     said = [_first(notes, NOT_STEADY) if pooled.steady else ""]
     said += [_first(notes, ROUGH) if not pooled.approximate else "", *pooled.note.split("; ")]
@@ -39,7 +42,7 @@ def _with(pooled: Comparison, notes: Sequence[str]) -> Comparison:
     if most and LOWER_BOUND not in pooled.note and pooled.error > 0:
         said.append(_first(bounds, LOWER_BOUND))
     if said[0]:  # error bars of a flow that changes are another matter
-        said = [part for part in said if LOWER_BOUND not in part]
+        said = [part for part in said if LOWER_BOUND not in part and part not in STEADY]
     return dataclasses.replace(pooled, note="; ".join(filter(None, dict.fromkeys(said))))
 
 

@@ -234,12 +234,15 @@ def rouse_times_of(case: Case, kind: int | str = 1) -> theory.RouseTimes | None:
     return theory.rouse_times(modes_of(molecule), friction, K=spring.K)
 
 
-def longest_rouse_time(case: Case) -> float | None:
-    """Of the molecules of the fluid, the time of the slowest normal mode; None without a theory."""
-    if case.fluid.molecule is None:
+def longest_relaxation(case: Case) -> tuple[float, str] | None:
+    """The time of the slowest normal mode of all molecules, and the theory; None without one."""
+    known = [(mode_times_of(case, kind)[0], kind) for kind in kinds_of_molecules(case)]
+    times = [(float(one.mode[0]), kind) for one, kind in known if one is not None]
+    if not times:
         return None
-    times = rouse_times_of(case, FLUID)
-    return None if times is None else float(times.mode[0])
+    time, kind = max(times, key=lambda one: one[0])
+    alone = kind == FLUID or case.solutes is None or case.solutes.solvent == "random"
+    return time, "Rouse" if alone else "Zimm"
 
 
 def stirring_diffusion(case: Case, boxed: bool = False) -> float | None:
@@ -455,12 +458,18 @@ def least_times_of(case: Case, kind: int | str = 1) -> theory.RouseTimes | None:
     return mode_times_of(dataclasses.replace(alone, fluid=fluid), kind)[0]
 
 
-def springs_in(case: Case) -> list[tuple[int, theory.RouseTimes]]:
-    """Of all kinds of molecules whose times are known: how many there are, and these times."""
+def kinds_of_molecules(case: Case) -> list[int | str]:
+    """The molecules of the fluid, and each kind of solutes that are molecules."""
     kinds: list[int | str] = [FLUID] if case.fluid.molecule is not None else []
     if case.solutes is not None:
         polymers = range(len(case.solutes.polymers))
         kinds += [1 + k for k in polymers if case.solutes.molecule(k) is not None]
+    return kinds
+
+
+def springs_in(case: Case) -> list[tuple[int, theory.RouseTimes]]:
+    """Of all kinds of molecules whose times are known: how many there are, and these times."""
+    kinds = kinds_of_molecules(case)
     known = [(group_of(case, "beads", kind).number, least_times_of(case, kind)) for kind in kinds]
     return [(number, times) for number, times in known if times is not None]
 

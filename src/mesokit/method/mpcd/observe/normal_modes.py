@@ -178,7 +178,7 @@ class NormalModesAccumulator:
                         error,
                         d * self.mean_square(spring.k * self.eigenvalues[p]) if spring else np.nan,
                         "a^2",
-                        "; ".join(filter(None, ("equipartition, as sub-steps swing", short))),
+                        "; ".join(filter(None, ("equipartition, in sub-steps", short))),
                     )
                 )
         return found

@@ -227,9 +227,18 @@ class StressAccumulator(TensorAccumulator):
         note = ""
         if case.box.sheared and self.bonded_beads:
             note = shear_note(case) if np.isfinite(ideal) else IN_SHEAR
+        elif ideal * self.flights_in_shear() > 0.5 * spread:
+            note = "approximate: of a fluid at rest, to which shear adds its square"
         note = self.cautioned(note)
         found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d], note))
         return found
+
+    def flights_in_shear(self) -> float:
+        """The share that shear adds to the pressure, by its size: the square of the shear rate
+        times the time that velocities are remembered; 0 without shear or a theory."""
+        ideal = self.wholes * self.case.fluid.kT
+        remembered = self.viscosities()[0] * setting.mass_density(self.case) / ideal
+        return float(np.nan_to_num((self.case.box.steady_rate * remembered) ** 2))
 
     def cautioned(self, note: str, part: int = -1) -> str:
         """A note on a part, and what to say of its error bar."""

@@ -17,7 +17,7 @@ TRUSTED = {2: 0.6, 3: 0.494}  # packing fraction above which theory is not that 
 def fluid_note(case: Case) -> str:
     """Where the law of the fluid of hard spheres is not to be trusted; empty where it is."""
     far = case.spheres.fraction(case.box) > TRUSTED[case.box.dimension]
-    return "approximate: the law is that of the fluid, far from freezing" if far else ""
+    return "approximate: theory of the fluid, and freezing is near" if far else ""
 
 
 def pair_rate(case: Case, root: float) -> float:

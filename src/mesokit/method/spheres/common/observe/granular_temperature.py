@@ -167,7 +167,7 @@ class GranularTemperatureAccumulator(Samples):
     def note(self) -> str:
         """What the law leaves out."""
         if self.law() == "Haff":
-            return "approximate: the law is that of a uniform gas"
+            return "approximate: molecular chaos, without clusters or pairs that meet again"
         if self.law() == "conserved" and self.theory.known.contact_time > 0:
             return "approximate: contacts hold a part of the energy"
         return ""
