@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -17,8 +16,7 @@ from mesokit.study.dependence import Theory
 from mesokit.study.plan import Base, Planned
 from mesokit.study.table import Pooled
 
-FEWEST, MOST = 7, 80  # places between two points; of a curve
-SECONDS = 0.8  # that a curve may take for more than the fewest
+FEWEST, SMOOTH = 7, 40  # places between two points; of a curve
 ALIKE = 1e-9  # part by which two expectations may differ
 
 
@@ -43,7 +41,7 @@ def theory_between(
     x, expected = [float(rows[0].point[key])], [rows[0].number.expected]
     try:
         memories = [_memory(runs, row) for row in rows]
-        inside = _inside(base, rows, memories[0])
+        inside = max(FEWEST, SMOOTH // max(len(rows) - 1, 1))
         for k, (low, high) in enumerate(itertools.pairwise(rows)):
             for point in _points(low.point, high.point, keys, log, inside):
                 found = [_expected(base, point, low, memory) for memory in memories[k : k + 2]]
@@ -56,16 +54,6 @@ def theory_between(
         return None
     new = np.isin(x, [float(row.point[key]) for row in rows], invert=True)
     return Theory(np.array(x), np.array(expected)) if np.isfinite(expected)[new].any() else None
-
-
-def _inside(base: Base, rows: Sequence[Pooled], memory: Mapping[str, Any]) -> int:
-    """How many places between two points make a smooth curve, in the time that there is."""
-    gaps = max(len(rows) - 1, 1)
-    _expected(base, rows[0].point, rows[0], memory)  # the first may import what it needs
-    began = perf_counter()
-    _expected(base, rows[0].point, rows[0], memory)
-    affordable = int(SECONDS / (2 * (perf_counter() - began)))
-    return max(FEWEST, min(MOST, affordable) // gaps)
 
 
 def _memory(runs: Sequence[Planned], row: Pooled) -> Mapping[str, Any]:
