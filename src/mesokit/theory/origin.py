@@ -51,7 +51,7 @@ def origins(
         "mean_free_path": Origin("definition, timestep sqrt(kT/m)", "always"),
         "viscosity": Origin("sum of both parts", f"{full}, within 1 to 7 %{flat}"),
         "viscosity_kinetic": Origin(
-            source("(1)", published), f"{full}, {short} 10 to 30 % low, in 2D with +a half{once}"
+            source("(1)", published), f"{full}, {short} 10 to 20 % low, in 2D 20 to 70 %{once}"
         ),
         "viscosity_collisional": Origin(
             source("(3)", published), f"{full}, {short} 1 to 2 % high, in 2D with +a 10 %"

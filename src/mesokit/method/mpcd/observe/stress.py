@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
 ROUSE = "Rouse molecules, beads with the friction of free particles"
 IN_SHEAR, OF_PART = "no theory of such a fluid in shear", "no theory of this part"
+# more kinetic stress than of molecular chaos at a mean free path of a tenth of a cell; measured in
+# docs/validation/viscosity_rules.md
+CARRIED = {2: "30 to 250 %", 3: "10 to 20 %"}
 UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
 
 
@@ -192,10 +195,7 @@ class StressAccumulator(TensorAccumulator):
             scale = setting.mass_density(case) * rate
             notes = (
                 setting.caveat(case),
-                # measured: docs/validation/viscosity_rules.md
-                setting.chaos(
-                    case, "short flights carry 10 to 40 % more, in 2D up to 3 times more"
-                ),
+                setting.chaos(case, f"short flights carry {CARRIED[case.box.dimension]} more"),
                 setting.chaos(case, "cells hand over 0 to 3 % less where flights are short"),
             )
             for part, name, note in zip(
