@@ -13,6 +13,7 @@ import pytest
 import mesokit
 from mesokit import CaseError
 from mesokit.cli import main
+from mesokit.io.tables import record
 from mesokit.report.table import cells
 from mesokit.seam.result import Comparison, Result
 
@@ -145,3 +146,19 @@ def test_results_are_described_in_plain_words():
     kinds = {"of": np.array(["small", "large"])}
     two = Result("q", "q", kinds, np.zeros(2), np.zeros(2), "speed", {}, samples=2)
     assert repr(two) == "q: speed, 2 samples; by group (2)"
+
+
+@pytest.mark.parametrize(
+    ("note", "said_of_it", "far"),
+    [
+        ("", "+9.0 s.e. (+18.0 %)", True),
+        ("steady; error bar is a lower bound: of 3 samples", "at most +9.0 s.e. (+18.0 %)", False),
+    ],
+)
+def test_a_lower_bound_of_an_error_bounds_the_deviation(note, said_of_it, far):
+    number = Comparison("slip", 5.9, 0.1, 5.0, "a", note)
+    assert cells(number)[4] == said_of_it and number.far == far
+    assert record(number)["lower_bound"] == bool(note)
+    most = "at most " if note else ""
+    assert f"expected 5: {most}+9.0 standard errors, +18.0 %" in str(number)
+    assert str(number).endswith(f"({note})" if note else "%")

@@ -95,6 +95,7 @@ def record(comparison: Comparison) -> dict[str, Any]:
         "percent": number(c.percent),
         "approximate": c.approximate,
         "steady": c.steady,
+        "lower_bound": c.lower_bound,
         "note": c.note,
     }
 

@@ -152,7 +152,7 @@ def _wrapped(text: str, width: float) -> list[str]:
 def _caution(c: Comparison) -> str:
     """What must be known to read a deviation, or why there is none."""
     unknown = c.measured != c.measured or c.expected != c.expected
-    if unknown or c.approximate or not c.steady or "lower bound" in c.note:
+    if unknown or c.approximate or not c.steady or c.lower_bound:
         return c.note
     return ""
 
@@ -168,7 +168,7 @@ def _line(c: Comparison, shared: Sequence[str]) -> str:
         if c.approximate and c.percent == c.percent:
             said[0] += f", {two_digits(c.percent, sign='+')} %"
         elif c.deviation == c.deviation:
-            said[0] += f", {c.deviation:+.1f} s.e."
+            said[0] += f", {c.in_errors('s.e.')}"
     said += [note] if note else []
     return f"{text} ({'; '.join(said)})" if said else text
 

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 HEADINGS = ("result", "what", "measured", "expected", "unit", "deviation", "note")
-SUSPICIOUS = 4.0  # standard errors
 
 
 def comparison_table(results: Iterable[Result]) -> Any:
@@ -24,7 +23,7 @@ def comparison_table(results: Iterable[Result]) -> Any:
     for result in results:
         name = result.name
         for comparison in result.comparisons:
-            style = "bold yellow" if abs(comparison.deviation) > SUSPICIOUS else None
+            style = "bold yellow" if comparison.far else None
             table.add_row(name, *cells(comparison)[:-1], style=style)
             name = ""
     return table
@@ -51,7 +50,7 @@ def cells(c: Comparison) -> tuple[str, str, str, str, str, str]:
     expected = "" if math.isnan(c.expected) else f"{c.expected:.4g}"
     deviation = ""
     if math.isfinite(c.deviation):
-        deviation = f"{c.deviation:+.1f} s.e."
+        deviation = c.in_errors("s.e.")
         if math.isfinite(c.percent) and c.expected:
             deviation += f" ({in_percent(c.percent)})"
     elif c.approximate and math.isfinite(c.percent):

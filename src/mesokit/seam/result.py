@@ -23,8 +23,10 @@ Array = NDArray[np.floating[Any]]
 FIGURES = "mesokit.report"  # by their names: results know nothing of how they are drawn
 TABLES = "mesokit.io.tables"  # and written
 EXACT = 2.0**-50  # of a value: an error below is that of rounding
+SUSPICIOUS = 4.0  # standard errors
 ROUNDING = 1e-12  # relative: two numbers that differ by less are the same
 NOT_STEADY = "not steady"  # how the note of a comparison begins, where that is so
+LOWER_BOUND = "error bar is a lower bound"  # what it says somewhere, where that is so
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,8 @@ class Comparison:
     note: what the theory assumes, or what the estimate is. One that starts with "approximate" says
         that the theory is known to be off by more than an error bar: deviations are in percent.
         One that starts with "not steady" says that the run began to measure too early for the
-        theory: there is no deviation.
+        theory: there is no deviation. One that has "error bar is a lower bound" says so of the
+        error: a deviation in such errors is an upper bound.
     inverse: whether the number is one over what was averaged, such as a viscosity from a curvature.
         Its deviation is that of what was averaged, whose error bar is the same on both sides.
 
@@ -92,6 +95,34 @@ class Comparison:
         return not self.note.startswith(NOT_STEADY)
 
     @property
+    def lower_bound(self) -> bool:
+        """Whether the error bar may be larger than it is known to be."""
+        return LOWER_BOUND in self.note
+
+    @property
+    def far(self) -> bool:
+        """Whether it is beyond 4 standard errors from an exact theory, as far as is known."""
+        return not self.lower_bound and abs(self.deviation) > SUSPICIOUS
+
+    def in_errors(self, unit: str = "standard errors") -> str:
+        """The deviation in words, empty where there is none.
+
+        That of a number that is one over what was averaged may be another than its own error bar
+        gives: then it is said to be of the inverse.
+
+        >>> Comparison("viscosity", 0.317, 0.082, 0.783, inverse=True).in_errors("s.e.")
+        '-2.3 s.e. of 1/value'
+        >>> Comparison("slip", 3.0, 1.0, 0.0, note=f"{LOWER_BOUND}: of 2 runs").in_errors("s.e.")
+        'at most +3.0 s.e.'
+        """
+        if not math.isfinite(self.deviation):
+            return ""
+        shown = f"{self.deviation:+.1f}"
+        own = f"{(self.measured - self.expected) / self.error:+.1f}"
+        of = " of 1/value" if shown != own else ""
+        return f"{'at most ' * self.lower_bound}{shown} {unit}{of}"
+
+    @property
     def percent(self) -> float:
         """(measured - expected) in percent of the size of what is expected, nan if that is 0.
 
@@ -115,12 +146,12 @@ class Comparison:
                 else (f", expected {self.expected:#.4g}")
             )
         if math.isfinite(self.deviation):
-            text += f": {self.deviation:+.1f} standard errors"
+            text += f": {self.in_errors()}"
             if math.isfinite(self.percent) and self.error < abs(self.expected):
                 text += f", {in_percent(self.percent)}"
         elif self.approximate and math.isfinite(self.percent):
             text += f": {two_digits(self.percent, sign='+')} %"
-        if self.note and (not math.isfinite(self.deviation) or "lower bound" in self.note):
+        if self.note and (not math.isfinite(self.deviation) or self.lower_bound):
             text += f" ({self.note})"
         return text
 

@@ -16,8 +16,8 @@ from mesokit.report.document.pictures import Picture, drawn
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
 from mesokit.report.document.template import render
 from mesokit.report.finish.origin import as_text
-from mesokit.report.table import SUSPICIOUS
 from mesokit.seam.method import Row, summary_of
+from mesokit.seam.result import SUSPICIOUS
 from mesokit.study.axes import Axis
 from mesokit.study.dependence import Theory
 from mesokit.study.names import called

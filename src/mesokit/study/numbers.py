@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from mesokit.report.table import SUSPICIOUS, cells
+from mesokit.report.table import cells
 from mesokit.study.plan import short_names
 from mesokit.study.table import Pooled
 
@@ -78,7 +78,7 @@ def _line(row: Pooled, shared: str) -> Line:
         seeds,
         row.runs,
         "" if note == shared else note,
-        abs(row.number.deviation) > SUSPICIOUS,
+        row.number.far,
         doubtful,
     )
 

@@ -6,9 +6,9 @@ import dataclasses
 from collections.abc import Iterable, Sequence
 
 from mesokit.seam.named import keyed
-from mesokit.seam.result import NOT_STEADY, Comparison, Result
+from mesokit.seam.result import LOWER_BOUND, NOT_STEADY, Comparison, Result
 
-ROUGH, LOWER_BOUND = "approximate", "error bar is a lower bound"
+ROUGH = "approximate"
 STEADY = ("steady", "steady flow")  # what theory is of
 FEW_SAMPLES = "samples, which may be correlated"
 

@@ -45,7 +45,7 @@ def of_relaxations(times: float) -> str:
 
 def _noted(comparison: Comparison, note: str) -> Comparison:
     """With a caveat of its error bar, where it has one and no such caveat."""
-    if not note or "lower bound" in comparison.note or not comparison.error > 0:
+    if not note or comparison.lower_bound or not comparison.error > 0:
         return comparison
     return dataclasses.replace(comparison, note="; ".join(filter(None, [comparison.note, note])))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from mesokit.report.table import SUSPICIOUS, cells
+from mesokit.report.table import cells
 from mesokit.seam.result import Result
 
 
@@ -33,7 +33,7 @@ def lines_of(results: Iterable[Result]) -> list[Line]:
     ('0.50(10)', '+5.0 s.e.', 'the run is short', True)
     """
     return [
-        Line(result.name, number == 0, *cells(c), abs(c.deviation) > SUSPICIOUS)
+        Line(result.name, number == 0, *cells(c), c.far)
         for result in results
         for number, c in enumerate(result.comparisons)
     ]

@@ -79,7 +79,7 @@ def caption(result: Result) -> str:
     words = [result.about]
     if result.theory and result.expected is not None:
         words.append(f"theory: {result.theory}")
-    notes = [c.note for c in result.comparisons if "lower bound" in c.note]
+    notes = [c.note for c in result.comparisons if c.lower_bound]
     words += dict.fromkeys(notes)
     return "; ".join(words) + "."
 

@@ -16,9 +16,8 @@ from mesokit.report.document.pictures import figures, films_of, pictures_of_flow
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
 from mesokit.report.document.template import render
 from mesokit.report.finish.origin import as_text
-from mesokit.report.table import SUSPICIOUS
 from mesokit.seam.method import Row, method_of, summary_of
-from mesokit.seam.result import Result
+from mesokit.seam.result import SUSPICIOUS, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
