@@ -207,8 +207,8 @@ def cooling(page: Page) -> None:
     haff = theory.haff_time(0.9, theory.enskog_rate(0.4 / math.pi, 1.0, 1.0, 0.1, 2), 2)
     page.text(
         f"4000 disks, e = 0.9, packing fraction 0.1, t_H = {haff:.2f}: temperature over that "
-        "of the start, mean of four runs, beside Haff's law, which holds as long as the gas "
-        "is uniform, and another program."
+        "of the start, mean of four runs, beside Haff's law, of molecular chaos, and "
+        "another program. Disks that meet again collide less often, so the gas stays warmer."
     )
     gases = [
         spheres(
@@ -226,7 +226,7 @@ def cooling(page: Page) -> None:
             gas.advance(1)
         value, error = mean_and_error([gas.totals()[2] / (gas.n - 1) for gas in gases])
         law = float(theory.haff_temperature(time, 1.0))
-        note = f"approximate: law of a uniform gas; another program {known}"
+        note = f"approximate: molecular chaos; another program {known}"
         rows.append(Comparison(f"T at {time} t_H", value, error, law, "", note))
         worst, other = max(worst, abs(value / law - 1)), max(other, abs(value / known - 1))
     page.table(rows)
