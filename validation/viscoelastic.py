@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Any
 
 import viscoelastic_modes as modes
@@ -58,7 +59,8 @@ def summary(page: Page, rows: dict[str, list[Comparison]], cases: dict[str, Case
                 figure if first else "", link if first else "",
                 parameters(cases[figure], figure[0] == "6") if first else "", c.what,
                 f"{c.measured:.{digits}f} {c.unit}", f"{c.error:.{digits}f}",
-                f"{c.expected:.{digits}f}", f"{c.deviation:+.1f}", c.note,
+                f"{c.expected:.{digits}f}",
+                f"{c.deviation:+.1f}" if math.isfinite(c.deviation) else "", c.note,
                 f"[picture](viscoelastic_{picture[figure]}.png)" if first else "",
             ])  # fmt: skip
     page.grid(

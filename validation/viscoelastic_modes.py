@@ -116,9 +116,10 @@ def draw(ax: Any, curve: Curve, number: int, until: float, name: str) -> None:
     )  # fmt: skip
     fine = np.linspace(0, until, FINE)
     beside = curve.laws(fine)
-    ax.plot(fine, beside[name], "-", color=colour, lw=1)
+    labels = ("theory", "theory, free particles") if number == 0 else (None, None)
+    ax.plot(fine, beside[name], "-", color=colour, lw=1, label=labels[0])
     if BASE in beside:
-        ax.plot(fine, beside[BASE], ":", color=colour, lw=1)
+        ax.plot(fine, beside[BASE], ":", color=colour, lw=1, label=labels[1])
     ax.axhline(0, color="k", lw=0.4)
 
 
@@ -132,8 +133,9 @@ def picture(
     page: Page, panels: list[tuple[str, list[Curve], float]], text: str, suffix: str
 ) -> None:
     """Curves of several figures side by side."""
-    fig, axes = plt.subplots(1, len(panels), figsize=(4.4 * len(panels), 3.8), squeeze=False)
-    for ax, (title, shown, until) in zip(axes[0], panels, strict=True):
+    rows = len(panels) // 2
+    fig, axes = plt.subplots(rows, 2, figsize=(8.8, 3.8 * rows))
+    for ax, (title, shown, until) in zip(axes.flat, panels, strict=True):
         for number, curve in enumerate(shown):
             draw(ax, curve, number, until, "theory" if title in SIMPLE else BEST)
         dressed(ax, title, until)
@@ -154,7 +156,8 @@ def dimer_panels(all_of: dict[str, list[Curve]], case: Case, slowest: float) -> 
                 label=f"$|k_n| = {root(curve.n).replace('sqrt ', chr(8730))}$",
             )  # fmt: skip
             t = np.linspace(0, until, FINE)
-            ax.plot(t, np.abs(curve.laws(t)[BEST]), "-", color=colour, lw=1)
+            label = "theory" if number == 0 else None
+            ax.plot(*size_with_zeros(t, curve.laws(t)[BEST]), "-", color=colour, lw=1, label=label)
         if name == "5.3":
             k, nu = 2 * math.pi / case.box.size[0], without_bonds(case).viscosity
             ax.plot(t, np.exp(-(2 / slowest + k * k * nu) * t / 2), "--", color=GREEN,
