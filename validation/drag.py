@@ -153,7 +153,7 @@ def in_a_channel(page: Page, axis: Any) -> None:
         scale = nu / (PUSH * HEIGHT**2) * room / (room - math.pi * RADIUS**2)
         rows.append(
             Comparison(f"{name}: mean velocity, in g H^2/nu", scale * mean.measured,
-                       scale * mean.error, speed, "", "viscosity of theory")
+                       scale * mean.error, speed, "", "theoretical viscosity")
         )  # fmt: skip
         rows.append(
             Comparison(f"{name}: share of the force on the cylinder", part.measured, part.error,
@@ -194,7 +194,7 @@ def in_arrays(page: Page, axis: Any) -> None:
     page.text(
         f"One disk of radius {POST:g} in a periodic square; the same fluid, driven to a "
         f"superficial velocity of about {SPEED}, which is a Reynolds number (of the diameter) of "
-        "1. Permeability k = nu U/g with the viscosity of theory, beside Sangani and "
+        "1. Permeability k = nu U/g with the theoretical viscosity, beside Sangani and "
         "Acrivos (1982)."
     )
     rows = []

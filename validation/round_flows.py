@@ -133,8 +133,8 @@ def hagen_poiseuille(page: Page, axis: Any) -> None:
     page.text(
         f"3D, SRD at 2.27 rad, density 10, timestep 0.1, thermostat; radius {RADIUS:g}, driven by "
         "a uniform force. The flow rate is compared with Hagen and Poiseuille twice: with the "
-        "viscosity of theory, which itself is good to about 1 %, and with that of the curvature of "
-        "the measured parabola, which tests the wall alone."
+        "theoretical viscosity, which itself is good to about 1 %, and with that of the curvature "
+        "of the measured parabola, which tests the wall alone."
     )
     files = page.run("pipe", pipe(long(1.5e5)))
     profile, rate, forces = files["radial-profile"], files["flow-rate"], files["forces"]
@@ -147,7 +147,11 @@ def hagen_poiseuille(page: Page, axis: Any) -> None:
         "flow rate, with the viscosity of the curvature", flow.measured, error, own, flow.unit,
         "both errors as if independent",
     )  # fmt: skip
-    rows = [*profile.comparisons, renamed(flow, "flow rate, with the viscosity of theory"), fitted]
+    rows = [
+        *profile.comparisons,
+        renamed(flow, "flow rate, with the theoretical viscosity"),
+        fitted,
+    ]
     page.table([*rows, *forces.comparisons])
     for c in rows[-2:]:
         percent = 100 * c.error / c.expected

@@ -151,7 +151,7 @@ def make() -> int:
         f"A free particle of this fluid diffuses with D = {diffusion.measured:.5f} +- "
         f"{diffusion.error:.5f} in a box of {cases['5.1'].box.size[0]} cells: a friction of "
         f"{bead.friction:.2f} +- {bead.error:.2f} in a large one, a hydrodynamic radius of "
-        f"{bead.radius:.4f}. That number and the viscosity of theory are all that the times of "
+        f"{bead.radius:.4f}. That number and the theoretical viscosity are all that the times of "
         "modes and the trimers are compared with. Deviations of the velocity modes are from "
         "theory with the measured time of the slowest mode (half of it is the stress time) and the "
         "background viscosity, up to "
