@@ -18,7 +18,7 @@ from mesokit.report import save_figure
 from mesokit.report.flow import KINDS, picture, quiver, solids, speed
 from mesokit.report.flow import vorticity as turning
 from mesokit.report.flow.data import Flow
-from mesokit.report.flow.quiet import averaged, smooth, smoothing
+from mesokit.report.flow.noise import averaged, smooth, smoothing
 from mesokit.report.flow.quiver import arrows
 from mesokit.report.flow.region import Region, region_of
 from mesokit.report.flow.setting import Setting

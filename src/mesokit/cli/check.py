@@ -36,7 +36,7 @@ def check(
     picture: str | None,
     axes: tuple[str, ...] | None,
 ) -> None:
-    """Check CASE, show it with all defaults, what follows from it, and what to mind."""
+    """Check CASE. Print it with all defaults, its derived numbers and its warnings."""
     from mesokit.case.kind import has_run
     from mesokit.case.warnings import has_memory
     from mesokit.seam.method import method_of, summary_of

@@ -1,4 +1,4 @@
-"""What virtual particles ask of a solid: how deep in it, how its surface moves, who takes a push.
+"""Geometry of a solid for virtual particles: depth, velocity of the surface, record of momentum.
 
 The first argument is the solid's NamedTuple of parameters; its class picks the implementation. A
 term is the number by which the solid knows one of its surfaces. Places are homed (see `protocol`).

@@ -64,7 +64,7 @@ class Neighbours(Protocol):
     def sampled(self, group: Group) -> bool:
         """True if some molecules of a group are looked at, others at each sample."""
 
-    def strangers(self, groups: list[Group]) -> bool:
+    def independent(self, groups: list[Group]) -> bool:
         """True if molecules are independent of all others."""
 
     def diffusion(self, group: Group) -> float | None:
@@ -164,7 +164,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
     def alone(self) -> bool:
         """Whether all molecules of one kind are looked at, and know nothing of one another."""
         whole = len(self.first) == 1 and len(self.beads[0]) == self.first[0].number > 1
-        return whole and not self.second and self.theory.strangers(self.first)
+        return whole and not self.second and self.theory.independent(self.first)
 
     def sample(self, group: Group) -> Ids:
         """Beads (molecules, length) of a group, or of so many as have enough particles."""
@@ -284,7 +284,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         bonded = max(group.length for group in groups) > 1
         if bonded and self.observable.pairs == "all" and not self.second:
             return None
-        return 1.0 if self.theory.strangers(groups) else None
+        return 1.0 if self.theory.independent(groups) else None
 
     def comparisons(self, expected: float | None) -> list[Comparison]:
         """Neighbours within the reach; without a theory also where g is largest."""

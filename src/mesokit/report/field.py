@@ -13,7 +13,7 @@ from mesokit.report.flow import density, quiver, speed
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.field_source import FieldSource
 from mesokit.report.flow.kinds import Panel
-from mesokit.report.flow.quiet import note, smooth, smoothing
+from mesokit.report.flow.noise import note, smooth, smoothing
 from mesokit.report.flow.region import region_of
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.solids import Section

@@ -1,4 +1,4 @@
-"""How long a run goes on: for more steps than its case said, or until a number is known well."""
+"""Length of a run: more steps than its case says, or until a standard error is small enough."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mesokit.seam.result import Result
 
 MOST = 100  # times as long as the case says, unless a limit is given
-SHORTEST, LONGEST = 1.05, 2.0  # by how much a run is made longer at a time
+SHORTEST, LONGEST = 1.05, 2.0  # factors by which a run is made longer at a time
 FORM = "expected OBSERVABLE.NUMBER=ERROR, such as velocity-profile.viscosity=1% or =0.005"
 
 
@@ -79,7 +79,9 @@ class Goal(NamedTuple):
 
 
 def next_length(excess: float, done: int, every: int, limit: int) -> int:
-    """Steps after the warm-up to go on to: errors fall with the root of the time.
+    """Steps after the warm-up to go on to, of which so many are done.
+
+    Errors fall with the root of the time, so it takes the excess squared, and 5 % more.
 
     >>> next_length(1.2, done=1000, every=10, limit=10**6), next_length(9.0, 1000, 10, 1500)
     (1520, 1500)
@@ -97,7 +99,7 @@ def limit_of(case: Case, most: Any) -> int:
 def longer(case: Case, steps: int, done: int) -> Case:
     """The case with so many steps after its warm-up.
 
-    Raises CaseError if the run has done more, the warm-up included in `done`.
+    Raises CaseError if the run has done more; `done` counts its warm-up too.
     """
     passed = max(done - case.run.warmup, 0)
     if require_steps(steps) < passed:

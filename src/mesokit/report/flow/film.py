@@ -23,7 +23,7 @@ from mesokit.report.flow.beads import BeadFrames, frames_of
 from mesokit.report.flow.colouring import in_film
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
-from mesokit.report.flow.quiet import averaged, note, smooth, smoothing
+from mesokit.report.flow.noise import averaged, note, smooth, smoothing
 from mesokit.report.flow.region import Region, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, Source, choose_one, sources

@@ -14,7 +14,7 @@ from mesokit.report.caption import at, rounded, symbols
 from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
-from mesokit.report.flow.quiet import note, smooth, smoothing
+from mesokit.report.flow.noise import note, smooth, smoothing
 from mesokit.report.flow.region import frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, choose, sources

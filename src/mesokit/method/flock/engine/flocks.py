@@ -22,21 +22,22 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.seam.engine import Array, Integers, State
 
-FEWEST = 2000  # birds for each thread: fewer wait for one another longer than they work
-MOST_BOXES = 2**30  # away: images are 32-bit
+FEWEST = 2000  # birds for each thread: with fewer, barriers cost more than the work
 
 
 class Flocks:
     """Engine of flocks (`mesokit.seam.engine.Engine`).
 
-    `side` is the least length of a cell, the reach unless said: no bit depends on it.
+    `side` is the least length of a cell, the reach unless said. Results do not depend on it.
     """
 
     def __init__(self, case: Case, threads: int = 1, side: float | None = None) -> None:
         given, size = case.flock, case.box.size
         self.n, self.dimension = given.birds(case.box), case.box.dimension
         self.box, self.speed, self.timestep = np.array(size, float), given.speed, given.timestep
-        self.solids: Solids | None = solids_of(case) if case.walls else None  # keeps the tables
+        self.solids: Solids | None = (
+            solids_of(case) if case.walls else None
+        )  # kernels hold only the address of its tables
         shut = closed_axes(case.walls)
         closed = [axis in shut for axis in case.box.axes]
         axes = axes_of(size, closed, max(side or 0.0, given.radius), self.n)
@@ -52,7 +53,7 @@ class Flocks:
             Nothing() if self.solids is None else self.solids.kernel,
         )
         self.flock = make(self.n, self.threads, axes, bool(cohesion))
-        self.seed, self.step, self.side = case.run.seed, 0, 0
+        self.seed, self.step, self.current = case.run.seed, 0, 0  # which of two buffers is current
         self.worker, self._packing = Threads(self.threads), Packing()
         self.seconds = {"steps": 0.0}
         self.worker.compile_ahead(step, *self._arguments(0))
@@ -69,18 +70,18 @@ class Flocks:
         birds = self.flock.birds
         birds.places[0], birds.headings[0] = places.T, headings.T
         birds.images[0], birds.numbers[0] = images.T, np.arange(self.n)
-        self.side = 0
+        self.current = 0
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps."""
         began = perf_counter()
         self.worker.run(step, *self._arguments(steps))
-        self.step, self.side = self.step + steps, (self.side + steps) % 2
+        self.step, self.current = self.step + steps, (self.current + steps) % 2
         self.seconds["steps"] += perf_counter() - began
 
     def _arguments(self, steps: int) -> tuple[Any, ...]:
         counter = Counter(np.uint64(self.seed), np.uint64(self.step))
-        return counter, steps, self.side, *self._packing(self.physics, self.flock)
+        return counter, steps, self.current, *self._packing(self.physics, self.flock)
 
     def check(self) -> None:
         """Do nothing: speeds are constant, so no state can be invalid."""
@@ -115,7 +116,7 @@ class Flocks:
         return self.speed * self.headings(ids)
 
     def masses(self, ids: Integers | None = None) -> Array:
-        """All 1, (n,)."""
+        """Masses (n,), all 1."""
         return np.ones(self.n if ids is None else len(ids))
 
     def totals(self) -> tuple[int, Array, float]:
@@ -124,7 +125,7 @@ class Flocks:
         return self.n, velocity, 0.5 * self.n * self.speed**2
 
     def state(self) -> State:
-        """Places, boxes and headings by number, and the step."""
+        """Positions, image counts and headings in order of bird number, and the step."""
         names = ("places", "headings", "images")
         found = {name: self._by_number(getattr(self.flock.birds, name)) for name in names}
         return found | {"step": np.array(self.step)}
@@ -135,6 +136,6 @@ class Flocks:
         self.step = int(state["step"])
 
     def _by_number(self, arrays: NDArray[Any]) -> NDArray[Any]:
-        found = np.empty(arrays.shape[:0:-1], arrays.dtype)
-        found[self.flock.birds.numbers[self.side]] = arrays[self.side].T
+        found = np.empty(arrays.shape[:0:-1], arrays.dtype)  # (2, d, n) to (n, d)
+        found[self.flock.birds.numbers[self.current]] = arrays[self.current].T
         return found

@@ -1,4 +1,4 @@
-"""Pulls, traps and magnetic fields on beads that do not fit the case."""
+"""Checks of external forces on beads: pulls, traps, magnetic fields."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def external(case: Case, given: Solutes) -> Iterator[str]:
-    """Beads that are there, vectors of the dimension, boxes whose images are at rest."""
+    """Errors: unknown beads, vectors of a wrong length, traps in a sheared box or too stiff."""
     d, lists = case.box.dimension, ("pulls", "traps", "magnetic")
     for name in lists:
         for i, part in enumerate(getattr(given, name)):

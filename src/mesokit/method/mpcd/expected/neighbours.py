@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.molecules import Group, free_diffusion, kind_of
-from mesokit.method.mpcd.expected.whose import default_of, groups_of, strangers
+from mesokit.method.mpcd.expected.selection import default_of, groups_of, independent
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 
 class NeighboursInFluid:
-    """Particles that do not know of one another, and whole molecules."""
+    """Theory of g(r) in an MPCD fluid: ideal particles, and molecules that do not interact."""
 
     answers = "radial-distribution"
     size = 1.0  # a cell
@@ -40,11 +40,11 @@ class NeighboursInFluid:
         """True of a group in the fluid, which has many particles."""
         return group.first < self.case.particles
 
-    def strangers(self, groups: list[Group]) -> bool:
+    def independent(self, groups: list[Group]) -> bool:
         """True if molecules are independent of all others."""
-        return strangers(self.case, self.of, groups)
+        return independent(self.case, self.of, groups)
 
     def diffusion(self, group: Group) -> float | None:
-        """Coefficient of the molecules of a group, by molecular chaos: Rouse's."""
+        """Rouse diffusion coefficient of a group's molecules, a^2/tau; None if unknown."""
         alone = free_diffusion(self.case, self.of, kind_of(self.case, group))
         return None if alone is None else alone / group.length

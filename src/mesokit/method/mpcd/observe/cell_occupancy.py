@@ -64,7 +64,7 @@ class CellOccupancyAccumulator(BlockAccumulator):
         self.blocks = Blocks((len(self.numbers) + 3,))
 
     def _whole(self) -> Array:
-        """The same where the first and last bin have no end."""
+        """Poisson probabilities (bins,), with the tails in the first and last bin."""
         from scipy.stats import poisson
 
         whole, mean = self.probability.copy(), self.case.fluid.density

@@ -205,7 +205,7 @@ class ResidenceTimeAccumulator(EventAccumulator):
     def lasting(self) -> bool:
         """Whether a visit lasted, or lasts, for half of a run or longer."""
         for run in self.runs:
-            events, since = run.durations.every[0], run.now.get("since", np.zeros(0))
+            events, since = run.durations.runs[0], run.now.get("since", np.zeros(0))
             going = events.span[1] - since[run.now["inside"]] if len(since) else since
             longest = np.append(events.lasted, going).max(initial=0.0)
             if longest > 0.5 * (events.span[1] - events.span[0]) > 0:
@@ -217,7 +217,7 @@ class ResidenceTimeAccumulator(EventAccumulator):
 
         The groups are of molecules; of few molecules they are parts of the time.
         """
-        events, now, samples = self.durations.every[0], self.now, self.samples_here
+        events, now, samples = self.durations.runs[0], self.now, self.samples_here
         going, end = np.flatnonzero(now["inside"]), events.span[1]
         stay = np.append(events.lasted, end - now["since"][going] + self.interval) / self.interval
         inverse = np.append(0.0, np.cumsum(1 / np.arange(1.0, samples + 1)))

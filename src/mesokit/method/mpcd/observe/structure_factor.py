@@ -14,7 +14,7 @@ from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.molecules import KIND, Group, free_bond, kind_of
-from mesokit.method.mpcd.expected.whose import default_of, groups_of, strangers
+from mesokit.method.mpcd.expected.selection import default_of, groups_of, independent
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.seam.engine import RunningFluid
@@ -191,7 +191,7 @@ class StructureFactorAccumulator(BlockAccumulator):
 
     def expected(self) -> Array | None:
         """That of one molecule on the average, where molecules do not know of one another."""
-        if not strangers(self.case, self.of, self.groups):
+        if not independent(self.case, self.of, self.groups):
             return None
         lengths, place = np.unique(np.round(self.lengths, 12), return_inverse=True)
         total, beads = np.zeros(len(lengths)), 0

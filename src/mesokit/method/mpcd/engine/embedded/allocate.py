@@ -1,9 +1,9 @@
-"""The memory of solutes that act on the fluid near them."""
+"""Arrays for beads that interact with fluid particles by a pair potential (shapes: `state.py`)."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,14 +20,13 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
     from mesokit.method.mpcd.solutes import Solutes
 
-FAST = 5.0  # thermal velocities: few particles are faster, and those are looked at one by one
+FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
 NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a run (chance 1e-14)
 ROOM = 3.0  # times as many particles near beads as there are in equilibrium
-ROUNDED_UP = 1.0 + 1e-9
 
 
 def embedded_of(given: Solutes, numbers: Numbers, threads: int) -> tuple:
-    """What such solutes need besides; () for those that collide with the fluid."""
+    """One `Embedded` for solutes with a solvent pair; () for those that collide with the fluid."""
     if given.solvent_pair is None:
         return ()
     case, d = numbers.case, numbers.dimension
@@ -36,9 +35,10 @@ def embedded_of(given: Solutes, numbers: Numbers, threads: int) -> tuple:
     diffuse = any(
         body.surface.rule == "diffuse" for body in (numbers.solids.bodies if numbers.solids else [])
     )
+    # A particle gains at most twice the speed of a surface that reflects it.
     further = 2.0 * fluid.timestep * fastest_surface(case) + NEVER * thermal * diffuse
     travel = FAST * thermal + further
-    reach = (pair.reach + given.skin + travel) * ROUNDED_UP
+    reach = (pair.reach + given.skin + travel) * (1.0 + 1e-9)  # rounded up
     expected = given.beads * numbers.density * boltzmann_volume(pair.kernel(), d, fluid.kT, reach)
     most = int(min(numbers.n, ROOM * expected + 1000))
     cells = tuple(float(n) for n in numbers.cells)
@@ -52,7 +52,7 @@ def embedded_of(given: Solutes, numbers: Numbers, threads: int) -> tuple:
             further=further,
             grid=Grid(zero, zero, cells, tuple(1.0 / n for n in cells)),
             marked=np.zeros(numbers.number_of_cells + 1, np.int64),
-            lists=_lists(reach, given.beads, numbers, threads),
+            lists=_cells(reach, given.beads, numbers, threads),
             lane=zeros((threads, most), np.int64),
             partners=zeros((threads, most), np.int32),
             beads=zeros((threads, most * PARTNERS), np.int32),
@@ -68,8 +68,8 @@ def embedded_of(given: Solutes, numbers: Numbers, threads: int) -> tuple:
     )
 
 
-def _lists(reach: float, beads: int, numbers: Numbers, threads: int) -> Any:
-    """Cells of beads; lists of neighbours are not made of them."""
+def _cells(reach: float, beads: int, numbers: Numbers, threads: int) -> Neighbours:
+    """The cells of beads; their lists of neighbours stay empty."""
     d, box, none = numbers.dimension, numbers.box, np.zeros(0, np.int32)
     cells = cells_of_beads(reach, box, numbers.closed)
     return Neighbours(

@@ -7,7 +7,7 @@ fluid do: all of a cell at once where the collision rule cannot tell (`per_cell`
 
 from typing import Any
 
-import mesokit.geometry.solids.filled  # noqa: F401  what virtual particles ask of solids
+import mesokit.geometry.solids.virtual_particles  # noqa: F401  what virtual particles ask of solids
 from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.virtual import one_by_one, per_cell
 from mesokit.method.mpcd.engine.virtual.gradient import follow_pieces

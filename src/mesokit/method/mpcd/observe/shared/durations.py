@@ -14,9 +14,9 @@ from mesokit.seam.observable import State, pack
 from mesokit.statistics import student
 
 MOST = 2**16  # events kept; every other one is dropped when they are full
-PARTS = 64  # of the time of a run, for error bars
+PARTS = 64  # equal parts of the time of a run, for error bars
 FEWEST, MANY = 8, 40  # bins of a histogram
-ALIKE, ONE = 1e-3, 0.1  # of the longest: a spread that is none; width of the one bin then
+ALIKE, ONE = 1e-3, 0.1  # of the longest: spread of equal durations; width of their one bin
 
 
 class Histogram(NamedTuple):
@@ -28,8 +28,13 @@ class Histogram(NamedTuple):
 
 
 class Events(NamedTuple):
-    """Those of one run that are kept: end, duration, whether it is whole, and whose it is (events,)
-    each; first and last time (2,) of the run, and the number of all whole ones."""
+    """Events of one run; times in tau.
+
+    ends, lasted: when each event ended, and how long it lasted (events,).
+    whole: False if it had begun before the run; ids: number of its molecule (events,).
+    span: first and last time of the run (2,).
+    number: of all whole events, those that were thinned out too.
+    """
 
     ends: Array
     lasted: Array
@@ -42,10 +47,10 @@ class Events(NamedTuple):
 class Durations:
     """Events that end at a time and have lasted for so long.
 
-    Events may be cut: they had begun before the run. Those count for `every` run alone.
+    Events that had begun before the run are stored in `runs`, and left out of means.
 
-    Error bars are those of sums over parts of the time of the run, so that events that follow from
-    one another, or happen to all molecules at once, do not count as independent.
+    Error bars come from sums over `PARTS` equal parts of the time. So events that follow from one
+    another, or happen to all molecules at once, do not count as independent.
 
     >>> events = Durations()
     >>> for time in range(64):
@@ -69,6 +74,8 @@ class Durations:
 
     def add(self, ends: Any, lasted: Array, ids: NDArray[Any], whole: Any = True) -> None:
         """Take in events, in the order of their ends but for those of one sample."""
+        # Every stride-th event is kept. In a full memory every other one is dropped, and the stride
+        # doubled, so that kept events are evenly spaced.
         for row in np.stack(np.broadcast_arrays(ends, lasted, whole, ids), axis=1).astype(float):
             kept, stride, number, complete = self._counts
             if number % stride == 0 and kept == MOST:
@@ -91,10 +98,10 @@ class Durations:
 
     def pool(self, other: Durations) -> None:
         """Take in the events of an independent run: only to read from then on."""
-        self._others += other.every
+        self._others += other.runs
 
     @property
-    def every(self) -> list[Events]:
+    def runs(self) -> list[Events]:
         """The events of each run."""
         ends, lasted, whole, ids = self._rows[: self._counts[0]].T
         own = Events(
@@ -104,31 +111,33 @@ class Durations:
 
     @property
     def number(self) -> int:
-        """Of all whole events, those that were not kept too."""
-        return sum(run.number for run in self.every)
+        """Number of whole events, stored or thinned out."""
+        return sum(run.number for run in self.runs)
 
     @property
     def lasted(self) -> Array:
         """Durations of the whole events that are kept, (events,)."""
-        return np.concatenate([run.lasted[run.whole] for run in self.every])
+        return np.concatenate([run.lasted[run.whole] for run in self.runs])
 
-    def sums(self, of: Array) -> Array:
-        """Sums (parts, n) over whole events in each part of the time, of numbers (events, n)."""
-        ends = [run.ends[run.whole] for run in self.every]
-        numbers = np.split(of, np.cumsum([len(end) for end in ends])[:-1])
-        runs = zip(self.every, ends, numbers, strict=True)
+    def sums(self, values: Array) -> Array:
+        """Sums (parts, n) of values (events, n) over the whole events in each part of the time."""
+        ends = [run.ends[run.whole] for run in self.runs]
+        numbers = np.split(values, np.cumsum([len(end) for end in ends])[:-1])
+        runs = zip(self.runs, ends, numbers, strict=True)
         return np.concatenate([in_parts(run.span, end, n) for run, end, n in runs])
 
-    def by_molecule(self, of: Array, molecules: Sequence[int]) -> Array:
-        """The same of the molecules of each group (groups, n), whenever the events end.
+    def by_molecule(self, values: Array, molecules: Sequence[int]) -> Array:
+        """Sums (groups, n) of values (events, n) over the whole events of each group of molecules.
 
-        `molecules`: of each run.
+        `molecules`: number of molecules in each run.
         """
         groups = np.minimum(GROUPS, molecules)
         firsts = np.cumsum(groups) - groups
-        runs = zip(self.every, groups, firsts, strict=True)
-        sums = np.zeros((groups.sum(), of.shape[1]))
-        np.add.at(sums, np.concatenate([r.ids[r.whole] % n + first for r, n, first in runs]), of)
+        runs = zip(self.runs, groups, firsts, strict=True)
+        sums = np.zeros((groups.sum(), values.shape[1]))
+        np.add.at(
+            sums, np.concatenate([r.ids[r.whole] % n + first for r, n, first in runs]), values
+        )
         return sums
 
     def mean(self) -> tuple[float, float]:
@@ -139,7 +148,7 @@ class Durations:
         return ratio(sums)
 
     def histogram(self) -> Histogram:
-        """The distribution, in some 8 to 40 bins from the shortest to the longest.
+        """The distribution, in 8 to 40 bins from the shortest to the longest.
 
         One event, or those that all last for as long, are a single bin about that time.
         """
@@ -160,11 +169,11 @@ class Durations:
         return Histogram(edges, found.value / width, found.error / width)
 
 
-def in_parts(span: Array, ends: Array, of: Array) -> Array:
-    """Sums (parts, n) of numbers (events, n) over the events that end in each part of a run."""
+def in_parts(span: Array, ends: Array, values: Array) -> Array:
+    """Sums (parts, n) of values (events, n) over the events that end in each part of a run."""
     edges = np.linspace(float(span[0]), float(span[1]), PARTS + 1)[1:-1]
-    sums = np.zeros((PARTS, of.shape[1]))
-    np.add.at(sums, np.searchsorted(edges, ends, side="right"), of)
+    sums = np.zeros((PARTS, values.shape[1]))
+    np.add.at(sums, np.searchsorted(edges, ends, side="right"), values)
     return sums
 
 
@@ -182,7 +191,7 @@ def sum_error(parts: Array) -> float:
 def ratio(sums: Array) -> tuple[float, float]:
     """Ratio of the first to the second of two sums (parts, 2), and its standard error.
 
-    Events that end early are short ones, and later parts of the time take back what these add.
+    Events that end early in a run are short; their bias falls with later parts of the time.
     """
     found: Estimate = of_ratio(sums[:, 0], sums[:, 1])._replace(falling=True)
     return float(found.value), float(found.error)

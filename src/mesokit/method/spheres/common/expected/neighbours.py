@@ -30,7 +30,7 @@ class _Spheres(NamedTuple):
 
 
 class NeighboursOfSpheres:
-    """No theory: spheres that touch are no strangers. Which spheres are looked at, and their size;
+    """No theory, as spheres that touch are not independent. Selected spheres, their size;
     `diameter`, `value` and `note` are those at contact."""
 
     answers = "radial-distribution"
@@ -50,7 +50,7 @@ class NeighboursOfSpheres:
         """False: all spheres are looked at."""
         return False
 
-    def strangers(self, groups: list[Group]) -> bool:
+    def independent(self, groups: list[Group]) -> bool:
         """False: spheres keep others away."""
         return False
 

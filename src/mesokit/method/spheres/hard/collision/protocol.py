@@ -85,18 +85,18 @@ def restitution(rule, speed):
 
 
 @generic
-def next_contact(rule, r, v, reach, growth):
+def next_contact(rule, r, v, contact, growth):
     """The time after which something happens between two spheres, infinite if nothing does.
 
-    r and v lead from one to the other; their surfaces meet at the distance reach + growth t.
+    r and v lead from one to the other; their surfaces meet at the distance contact + growth t.
     """
 
 
 @generic
-def step_of_energy(rule, distance, reach):
+def step_of_energy(rule, distance, contact):
     """How much less energy the pair has nearer than this distance, and whether there is such a step
     and not a collision of surfaces."""
 
 
-next_contact.otherwise(lambda rule, r, v, reach, growth: touching(r, v, reach, growth))
-step_of_energy.otherwise(lambda rule, distance, reach: (0.0, False))
+next_contact.otherwise(lambda rule, r, v, contact, growth: touching(r, v, contact, growth))
+step_of_energy.otherwise(lambda rule, distance, contact: (0.0, False))

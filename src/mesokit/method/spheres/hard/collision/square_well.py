@@ -16,14 +16,15 @@ from mesokit.method.spheres.hard.engine.touching import touching
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
 
-ON_EDGE = 1e-12  # of the distance: nobody is as near to it but by having come there
+ON_EDGE = 1e-12  # of r^2: a pair as near to the edge has just arrived there
 
 
 @component
 class SquareWell(SphereCollision):
     """A potential of -depth between touching and `width` diameters; a shoulder where depth < 0.
 
-    Pairs that come in gain the depth, those without as much energy of their own stay in.
+    A pair gains the depth on entering. It leaves if its energy along the line of centres exceeds
+    the depth, and is reflected otherwise.
 
     Examples
     --------
@@ -43,12 +44,12 @@ class SquareWell(SphereCollision):
     @property
     def elastic(self) -> bool:
         """Whether it keeps energy: that of spins and pairs as well."""
-        rough = self.tangential == 1.0 and self.friction is None
-        return self.restitution == 1.0 and (not self.rough or rough)
+        perfectly_rough = self.tangential == 1.0 and self.friction is None
+        return self.restitution == 1.0 and (not self.rough or perfectly_rough)
 
     @property
     def reach(self) -> float:
-        """Distance in diameters at which two spheres first feel one another."""
+        """Range of the potential, in diameters."""
         return self.width
 
     @property
@@ -75,19 +76,24 @@ def _(rule, speed):
 
 
 @scalar
-def is_inside(rule, r, v, reach):
-    """Whether a pair is in the well; on its edge it is if it moves inwards."""
-    edge = rule.width * reach
+def is_inside(rule, r, v, contact):
+    """Whether a pair is in the well; on its edge it is if it moves inwards.
+
+    `contact` is the distance at which the spheres touch.
+    """
+    edge = rule.width * contact
     past = dot(r, r) / (edge * edge) - 1.0
     return past < -ON_EDGE or (past < ON_EDGE and dot(r, v) < 0.0)
 
 
 @next_contact.register(Well)
-def _(rule, r, v, reach, growth):
-    edge = rule.width * reach
-    if not is_inside(rule, r, v, reach):
+def _(rule, r, v, contact, growth):
+    # Outside, the time to the edge; inside, to the core, or else to the edge from within: the later
+    # root of |r + v t| = edge. The edge does not grow.
+    edge = rule.width * contact
+    if not is_inside(rule, r, v, contact):
         return touching(r, v, edge, 0.0)
-    meets = touching(r, v, reach, growth)
+    meets = touching(r, v, contact, growth)
     if meets < math.inf:
         return meets
     a, b, c = dot(v, v), dot(r, v), dot(r, r) - edge * edge
@@ -97,5 +103,6 @@ def _(rule, r, v, reach, growth):
 
 
 @step_of_energy.register(Well)
-def _(rule, distance, reach):
-    return rule.depth, distance > 0.5 * (1.0 + rule.width) * reach
+def _(rule, distance, contact):
+    # The event is at the edge if the distance is nearer to the edge than to the core.
+    return rule.depth, distance > 0.5 * (1.0 + rule.width) * contact

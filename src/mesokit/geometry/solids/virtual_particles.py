@@ -1,4 +1,7 @@
-"""Solids of any shape for virtual particles."""
+"""Geometry of `Bodies` for virtual particles: depth, velocity of the surface, record of momentum.
+
+Implements `geometry/cut.py`. Lengths are in cells; a term is the number of a surface.
+"""
 
 import math
 
@@ -23,6 +26,7 @@ from mesokit.scalar.vector import added_scaled
 
 @behind.register(Bodies)
 def _(solid, r):
+    # A surface without virtual particles reports a clearance that is not negative.
     clear, part, term = nearest(solid.tables, r)
     if clear >= 0.0 or surface_number(solid.tables, term, FILLS) < 0.5:
         return abs(clear), term, r
@@ -42,6 +46,7 @@ def _(solid, term, r):
 
 @roomy.register(Bodies)
 def _(solid, r):
+    # Half the diagonal of a cell. A cheap lower bound of the clearance comes before the search.
     room = 0.5 * math.sqrt(float(len(r)))
     if sure_clearance(solid, r) >= room:
         return True

@@ -1,4 +1,4 @@
-"""Which particles or beads are looked at, and whether others matter to them."""
+"""Particles or beads that an observable selects, and whether they are independent of others."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def default_of(case: Case, of: str | None) -> str:
-    """What was asked for, or else beads where there are any."""
+    """`of` if given; else "beads" of a case with solutes or molecules, "particles" of others."""
     if of is not None:
         return of
     beads = case.solutes is not None or case.fluid.molecule is not None
@@ -21,7 +21,7 @@ def default_of(case: Case, of: str | None) -> str:
 
 
 def groups_of(case: Case, of: str, kind: int | str | None = None) -> list[Group]:
-    """Those of a kind, or all. Raises CaseError if there are none.
+    """Groups of one kind, or of all kinds. Raises CaseError if there are none.
 
     Beads of all kinds of solutes are a group for each, particles of all species are one.
     """
@@ -31,8 +31,12 @@ def groups_of(case: Case, of: str, kind: int | str | None = None) -> list[Group]
     return [group_of(case, of, kind)]
 
 
-def strangers(case: Case, of: str, groups: list[Group]) -> bool:
-    """True if particles, or molecules as wholes, are independent of all others."""
+def independent(case: Case, of: str, groups: list[Group]) -> bool:
+    """Whether particles, or molecules as wholes, are independent of all others.
+
+    They are not where walls, a driving force or demixing make the density uneven, nor where solutes
+    interact.
+    """
     solutes = case.solutes
     if case.walls or setting.driven(case) or setting.gathered(case):
         return False

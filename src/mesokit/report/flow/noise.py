@@ -1,4 +1,4 @@
-"""Velocities of pictures above their noise: films average over frames, maps over bins."""
+"""How far to average a velocity, over bins or frames, so that it exceeds its thermal noise."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 CLEAR = 2.5  # times the noise: what a picture should show
 WIDTHS = (0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # of smoothing, in bins
-PART, TRIED = 4, 6  # of the frames of a film, the largest part of a mean; frames that are tried
+PART, TRIED = 4, 6  # a mean takes at most a fourth of the frames; frames that are tried
 
 
 def smooth(flow: Flow, width: float) -> Flow:
-    """The flow with its velocity, and the example of its noise, averaged over about so many bins.
+    """The flow with its velocity, and the sample of its noise, averaged over about so many bins.
 
     Parameters
     ----------
@@ -48,9 +48,9 @@ def smooth(flow: Flow, width: float) -> Flow:
 
 
 def smoothing(panels: Sequence[Panel], flows: Sequence[Flow], region: Region) -> tuple[float, bool]:
-    """Least width, in bins, that lifts what the panels show of a velocity above its noise.
+    """Least width in bins that lifts velocities above noise in all panels, and whether it does.
 
-    And whether even the widest did: one eighth of the shorter side of the map, at most WIDTHS[-1].
+    The widest is one eighth of the shorter side of the map, and at most WIDTHS[-1].
     """
     known = _known(flows)
     if not known:
@@ -60,7 +60,7 @@ def smoothing(panels: Sequence[Panel], flows: Sequence[Flow], region: Region) ->
     for width in (w for w in WIDTHS if w <= widest):
         if _clear(panels, [smooth(flow, width) for flow in known], region):
             return width, True
-    return width, False
+    return width, False  # the widest
 
 
 def averaged(
@@ -81,12 +81,12 @@ def averaged(
 
 
 def _known(flows: Sequence[Flow]) -> list[Flow]:
-    """Those with a velocity and an example of its noise."""
+    """Flows with a velocity and a sample of its noise."""
     return [flow for flow in flows if flow.velocity is not None and flow.noise is not None]
 
 
 def _clear(panels: Sequence[Panel], flows: Sequence[Flow], region: Region) -> bool:
-    """Whether every panel of a velocity shows more of it than of its noise."""
+    """Whether each panel of a velocity has a median range of `CLEAR` times that of the noise."""
     return all(
         np.median([panel.reach(flow, region) for flow in flows])
         >= CLEAR * np.median([panel.reach(replace(f, velocity=f.noise), region) for f in flows])
@@ -96,7 +96,7 @@ def _clear(panels: Sequence[Panel], flows: Sequence[Flow], region: Region) -> bo
 
 
 def note(panels: Sequence[Panel], flow: Flow, clear: bool) -> str:
-    """What was done about the noise, and what is left to the user."""
+    """What the caption says: the width of smoothing, and what would help where noise remains."""
     if flow.velocity is None or all(panel.NEEDS != "velocity" for panel in panels):
         return ""
     said = []
