@@ -375,7 +375,7 @@ def test_a_crowd_in_one_cell_has_the_same_bits():
         engine.restore(start)
         engine.advance(1)
     seen = np.empty(one.n)
-    seen[one.flock.birds.numbers[one.side]] = one.flock.seen.sums[2]
+    seen[one.flock.birds.numbers[one.current]] = one.flock.seen.sums[2]
     # single precision knows the reach to some 1e-7
     least, most = (sums_of(start["places"], start["headings"], one.box, r)[1] for r in NEARLY)
     assert least.max() > 2 * CHUNK
