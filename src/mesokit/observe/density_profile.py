@@ -11,6 +11,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import Array, Compared, Profile, ProfileAccumulator
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import method_of
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
@@ -69,11 +70,8 @@ class DensityProfile(Profile):
         super().check(case)
         self.theory(case)
 
-    def accumulator(self, case: Case) -> DensityProfileAccumulator:
-        """An empty memory for it."""
-        return DensityProfileAccumulator(self, case)
 
-
+@accumulator_of(DensityProfile)
 class DensityProfileAccumulator(ProfileAccumulator):
     """Sums of each slice, per volume."""
 

@@ -15,7 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.observe.shared.field import Array, Field
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import of_ratio
-from mesokit.seam.observable import State
+from mesokit.seam.observable import State, accumulator_of
 from mesokit.seam.result import Result
 from mesokit.statistics import spread_ids
 
@@ -79,10 +79,6 @@ class FlowFrames(Field):
                 "one frame, of a window cut short"
             )
 
-    def accumulator(self, case: Case) -> FlowFramesAccumulator:
-        """An empty memory for it."""
-        return FlowFramesAccumulator(self, case)
-
 
 def _parts(case: Case) -> list[str]:
     """What is kept of each bin. Velocities are weighted by mass, which a mixture has apart."""
@@ -91,11 +87,11 @@ def _parts(case: Case) -> list[str]:
     return ["density", *["mass_density"] * mixture, *velocities]
 
 
+@accumulator_of(FlowFrames)
 class FlowFramesAccumulator:
     """All frames so far, and the sums of the one that is being filled."""
 
     def __init__(self, observable: FlowFrames, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.axes = tuple(case.box.index(axis) for axis in observable.axes)
         lengths = [case.box.size[axis] for axis in self.axes]

@@ -16,7 +16,7 @@ from mesokit.observe.shared.origins import GROUPS, Origins
 from mesokit.seam.engine import Particles
 from mesokit.seam.estimate import Estimate, fit
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -96,16 +96,13 @@ class MeanSquareDisplacement(Observable):
         """Raise CaseError without an axis or a molecule to follow."""
         self.displacement(case)
 
-    def accumulator(self, case: Case) -> MeanSquareDisplacementAccumulator:
-        """An empty memory for it."""
-        return MeanSquareDisplacementAccumulator(self, case)
-
 
 def _square_distance(old: Array, new: Array) -> Array:
     difference = new - old
     return np.einsum("ij,ij->i", difference, difference)
 
 
+@accumulator_of(MeanSquareDisplacement)
 class MeanSquareDisplacementAccumulator(BlockAccumulator):
     """Unwrapped positions at many origins."""
 

@@ -11,6 +11,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import KIND, Array, Compared, Profile, ProfileAccumulator
 from mesokit.seam.estimate import Estimate, of_ratio
 from mesokit.seam.method import method_of
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
 from mesokit.statistics import Blocks
 
@@ -61,11 +62,8 @@ class TemperatureProfile(Profile):
         super(TemperatureProfile, self).check(case)  # noqa: UP008  # the decorator makes a new class
         self.theory(case)
 
-    def accumulator(self, case: Case) -> TemperatureProfileAccumulator:
-        """An empty memory for it."""
-        return TemperatureProfileAccumulator(self, case)
 
-
+@accumulator_of(TemperatureProfile)
 class TemperatureProfileAccumulator(ProfileAccumulator):
     """Number, mass, sum of m v^2 and momentum, (3 + d, bins, bins across the flow).
 

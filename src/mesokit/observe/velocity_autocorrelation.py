@@ -12,7 +12,7 @@ from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import spread_ids
 
@@ -80,11 +80,8 @@ class VelocityAutocorrelation(Observable):
         """Raise CaseError without an axis to follow."""
         self.memory(case)
 
-    def accumulator(self, case: Case) -> VelocityAutocorrelationAccumulator:
-        """An empty memory for it."""
-        return VelocityAutocorrelationAccumulator(self, case)
 
-
+@accumulator_of(VelocityAutocorrelation)
 class VelocityAutocorrelationAccumulator(BlockAccumulator):
     """Velocities at many origins."""
 

@@ -14,7 +14,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.observe.shared import chi_square
 from mesokit.observe.shared.profile import KIND
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -87,16 +87,12 @@ class VelocityDistribution(Observable):
         found: Velocities = method_of(case).expected["velocity-distribution"](case, self)
         return found
 
-    def accumulator(self, case: Case) -> VelocityDistributionAccumulator:
-        """An empty memory for it."""
-        return VelocityDistributionAccumulator(self, case)
 
-
+@accumulator_of(VelocityDistribution)
 class VelocityDistributionAccumulator(BlockAccumulator):
     """Block averages of both histograms, as shares of the particles, and of both chi-squares."""
 
     def __init__(self, observable: VelocityDistribution, case: Case) -> None:
-        observable.check(case)
         self.name, self.case, d = observable.label, case, case.box.dimension
         self.theory = observable.velocities(case)
         self.axis = self.theory.axis

@@ -13,6 +13,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import KIND, Array, Compared, Profile, ProfileAccumulator
 from mesokit.seam.estimate import Estimate, of_ratio
 from mesokit.seam.method import method_of
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
@@ -68,11 +69,8 @@ class VelocityProfile(Profile):
         """A component along which nothing flows."""
         yield from self.theory(case).warnings()
 
-    def accumulator(self, case: Case) -> VelocityProfileAccumulator:
-        """An empty memory for it."""
-        return VelocityProfileAccumulator(self, case)
 
-
+@accumulator_of(VelocityProfile)
 class VelocityProfileAccumulator(ProfileAccumulator):
     """Momentum and mass of each slice."""
 

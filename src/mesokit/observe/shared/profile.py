@@ -53,7 +53,6 @@ class ProfileAccumulator(BlockAccumulator):
     """Block sums of `width` numbers for each slice."""
 
     def __init__(self, observable: Profile, case: Case, width: int) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.axis = case.box.index(observable.axis)
         self.bins = max(1, round(case.box.size[self.axis] * observable.bins_per_cell))

@@ -13,7 +13,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.method.flock.observe.protocol import FlockObservable
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -58,16 +58,12 @@ class ClusterSizes(FlockObservable):
         """The distance in this case."""
         return float(case.flock.radius) if self.distance is None else self.distance
 
-    def accumulator(self, case: Case) -> ClusterSizesAccumulator:
-        """An empty memory for it."""
-        return ClusterSizesAccumulator(self, case)
 
-
+@accumulator_of(ClusterSizes)
 class ClusterSizesAccumulator(BlockAccumulator):
     """Block averages of the shares, the mean size and the largest."""
 
     def __init__(self, observable: ClusterSizes, case: Case) -> None:
-        observable.check(case)
         self.case, self.name, self.near = case, observable.label, observable.near(case)
         shut = closed_axes(case.walls)
         self.around = np.array(

@@ -13,7 +13,7 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.flock.observe.protocol import FlockObservable, blind, mean_heading, open_box
 from mesokit.seam.estimate import of_mean, of_ratio
-from mesokit.seam.observable import BlockAccumulator
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -52,16 +52,12 @@ class DensityBands(FlockObservable):
                 "do the profiles along them"
             )
 
-    def accumulator(self, case: Case) -> DensityBandsAccumulator:
-        """An empty memory for it."""
-        return DensityBandsAccumulator(self, case)
 
-
+@accumulator_of(DensityBands)
 class DensityBandsAccumulator(BlockAccumulator):
     """Block averages of number and heading in each bin, and of the longest waves."""
 
     def __init__(self, observable: DensityBands, case: Case) -> None:
-        observable.check(case)
         self.case, self.name, self.bins = case, observable.label, observable.bins
         self.axis = None if observable.axis is None else AXES.index(observable.axis)
         self.length = float(case.box.size[self.axis or 0])

@@ -16,7 +16,7 @@ from mesokit.method.flock.observe.protocol import (
     mean_heading,
 )
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
 
@@ -36,10 +36,6 @@ class PolarOrder(FlockObservable):
 
     quantity: Literal["polar-order"] = tag("polar-order")
 
-    def accumulator(self, case: Case) -> PolarOrderAccumulator:
-        """An empty memory for it."""
-        return PolarOrderAccumulator(self, case)
-
 
 class Known(NamedTuple):
     """Mean, mean square and Binder cumulant by theory, nan where it has none, and what it says."""
@@ -50,13 +46,13 @@ class Known(NamedTuple):
     why: str = ""
 
 
+@accumulator_of(PolarOrder)
 class PolarOrderAccumulator(BlockAccumulator):
     """Powers of the order, and a time series of it and of the mean heading."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series")
 
     def __init__(self, observable: PolarOrder, case: Case) -> None:
-        observable.check(case)
         self.case, self.name = case, observable.label
         self.blocks, self.series = Blocks(3), TimeSeries(1 + case.box.dimension)
 

@@ -22,7 +22,7 @@ from mesokit.method.mpcd.expected.molecules import (
 from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -47,11 +47,8 @@ class BondCorrelation(Observable):
         """Raise CaseError without molecules."""
         molecule_of(case, self.quantity, self.kind)
 
-    def accumulator(self, case: Case) -> BondCorrelationAccumulator:
-        """An empty memory for it."""
-        return BondCorrelationAccumulator(self, case)
 
-
+@accumulator_of(BondCorrelation)
 class BondCorrelationAccumulator:
     """Bonds at many origins, for each pair of axes."""
 

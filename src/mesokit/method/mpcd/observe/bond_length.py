@@ -21,7 +21,7 @@ from mesokit.method.mpcd.expected.molecules import (
 )
 from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.seam.engine import RunningFluid, Terms
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -40,16 +40,12 @@ class BondLength(Observable):
         """Raise CaseError for a fluid without bonds."""
         molecule_of(case, self.quantity, self.kind)
 
-    def accumulator(self, case: Case) -> BondLengthAccumulator:
-        """An empty memory for it."""
-        return BondLengthAccumulator(self, case)
 
-
+@accumulator_of(BondLength)
 class BondLengthAccumulator(MoleculeTensorAccumulator):
     """Block averages of the products."""
 
     def __init__(self, observable: BondLength, case: Case) -> None:
-        observable.check(case)
         molecules = group_of(case, "beads", observable.kind).number
         super().__init__(observable, case, ("bonds",), observable.kind, molecules)
         self.molecules = molecules

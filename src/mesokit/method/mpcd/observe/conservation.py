@@ -14,7 +14,7 @@ from mesokit.method.mpcd.columns import forgets, temperature
 from mesokit.method.mpcd.expected import setting
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
 from mesokit.seam.result import NOT_STEADY, Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -38,11 +38,8 @@ class Conservation(Observable):
     in_open_box: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
-    def accumulator(self, case: Case) -> ConservationAccumulator:
-        """An empty memory for it."""
-        return ConservationAccumulator(self, case)
 
-
+@accumulator_of(Conservation)
 class ConservationAccumulator:
     """The first sample, a thinned time series, block averages and the largest drift."""
 

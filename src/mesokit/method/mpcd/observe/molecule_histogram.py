@@ -26,7 +26,7 @@ from mesokit.method.mpcd.expected.molecules import (
 from mesokit.method.mpcd.expected.traps import held, trapped
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State
+from mesokit.seam.observable import Observable, State, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -95,16 +95,12 @@ class MoleculeHistogram(Observable):
         """Number of the axis."""
         return flow_axis(case) if self.axis is None else case.box.index(self.axis)
 
-    def accumulator(self, case: Case) -> MoleculeHistogramAccumulator:
-        """An empty memory for it."""
-        return MoleculeHistogramAccumulator(self, case)
 
-
+@accumulator_of(MoleculeHistogram)
 class MoleculeHistogramAccumulator:
     """Shares of the molecules in fine bins."""
 
     def __init__(self, observable: MoleculeHistogram, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.group = group_of(case, "beads", observable.kind)
         self.beads = self.group.beads(observable.molecules)

@@ -21,7 +21,7 @@ from mesokit.method.mpcd.expected.molecules import (
 )
 from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -43,11 +43,8 @@ class MoleculeSize(Observable):
         """Raise CaseError without molecules."""
         molecule_of(case, self.quantity, self.kind)
 
-    def accumulator(self, case: Case) -> MoleculeSizeAccumulator:
-        """An empty memory for it."""
-        return MoleculeSizeAccumulator(self, case)
 
-
+@accumulator_of(MoleculeSize)
 class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
     """Block averages of the tensors."""
 

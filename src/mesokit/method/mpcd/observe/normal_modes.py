@@ -26,7 +26,7 @@ from mesokit.method.mpcd.observe.transverse_modes import FEWEST, LOWEST, decayin
 from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import noted
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import MultipleTau
 
@@ -58,11 +58,8 @@ class NormalModes(Observable):
         """Raise CaseError without molecules."""
         molecule_of(case, self.quantity, self.kind)
 
-    def accumulator(self, case: Case) -> NormalModesAccumulator:
-        """An empty memory for it."""
-        return NormalModesAccumulator(self, case)
 
-
+@accumulator_of(NormalModes)
 class NormalModesAccumulator:
     """One correlator for each mode, over molecules and axes."""
 

@@ -19,7 +19,7 @@ from mesokit.method.mpcd.observe.shared.swing import Series, amplitudes, in_slit
 from mesokit.method.mpcd.observe.shared.swing import comparisons as swings
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import (
     Blocks,
@@ -108,18 +108,14 @@ class Probe(Observable):
         flowing = setting.driven_axis(case)
         return 1 if flowing in (None, 0) else 0
 
-    def accumulator(self, case: Case) -> ProbeAccumulator:
-        """An empty memory for it."""
-        return ProbeAccumulator(self, case)
 
-
+@accumulator_of(Probe)
 class ProbeAccumulator(BlockAccumulator):
     """The time series of the velocity, and its average."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series", "last")
 
     def __init__(self, observable: Probe, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.dimension = d = case.box.dimension
         self.centre = np.array(observable.place(case))

@@ -20,7 +20,7 @@ from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH, kept
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
 from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -48,16 +48,12 @@ class Stress(Observable):
         if case.walls:
             raise CaseError("stress is measured without walls; use wall-stress")
 
-    def accumulator(self, case: Case) -> StressAccumulator:
-        """An empty memory for it."""
-        return StressAccumulator(self, case)
 
-
+@accumulator_of(Stress)
 class StressAccumulator(TensorAccumulator):
     """Block averages of both parts and their sum."""
 
     def __init__(self, observable: Stress, case: Case) -> None:
-        observable.check(case)
         self.bonded_beads = case.fluid.molecule is not None or case.solutes is not None
         self.given = PARTS[: 3 if self.bonded_beads else 2]
         self.every = observable.every

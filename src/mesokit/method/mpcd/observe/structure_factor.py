@@ -18,7 +18,7 @@ from mesokit.method.mpcd.expected.whose import default_of, groups_of, strangers
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import spread_ids
 
@@ -74,11 +74,8 @@ class StructureFactor(Observable):
             return groups_of(case, "beads", 1 if self.kind is None else self.kind)
         return groups_of(case, of, self.kind)
 
-    def accumulator(self, case: Case) -> StructureFactorAccumulator:
-        """An empty memory for it."""
-        return StructureFactorAccumulator(self, case)
 
-
+@accumulator_of(StructureFactor)
 class StructureFactorAccumulator(BlockAccumulator):
     """Means of each shell; of chains also of groups of them, of others of each wave.
 
@@ -89,7 +86,6 @@ class StructureFactorAccumulator(BlockAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("means", "sums")
 
     def __init__(self, observable: StructureFactor, case: Case) -> None:
-        observable.check(case)
         self.name, self.case = observable.label, case
         self.of, self.groups = default_of(case, observable.of), observable.chosen(case)
         self.kind = observable.kind

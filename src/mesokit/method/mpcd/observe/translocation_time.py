@@ -20,7 +20,7 @@ from mesokit.method.mpcd.observe.shared.events import (
     require_still,
 )
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -66,11 +66,8 @@ class TranslocationTime(Observable):
         """Number of the axis."""
         return flow_axis(case) if self.axis is None else case.box.index(self.axis)
 
-    def accumulator(self, case: Case) -> TranslocationTimeAccumulator:
-        """An empty memory for it."""
-        return TranslocationTimeAccumulator(self, case)
 
-
+@accumulator_of(TranslocationTime)
 class TranslocationTimeAccumulator(EventAccumulator):
     """Where the first and the last bead of each molecule are, and since when it is in a plane.
 
@@ -80,7 +77,6 @@ class TranslocationTimeAccumulator(EventAccumulator):
     """
 
     def __init__(self, observable: TranslocationTime, case: Case) -> None:
-        observable.check(case)
         words = Words(
             "translocation-time", observable.label, "translocation time", "translocations"
         )

@@ -28,10 +28,11 @@ from mesokit.method.mpcd.observe.shared.modes import (
     transverse_units,
 )
 from mesokit.observe.shared.fitted import fitted_number
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
+    pass
 
 LOWEST = (0.5, 0.2)  # of the correlation, that the fit looks at: later lags add little but noise
 FEWEST = 4  # lags; the lower limit serves where the sampling is too coarse for the upper one
@@ -49,16 +50,13 @@ class TransverseModes(Modes):
 
     quantity: Literal["transverse-modes"] = tag("transverse-modes")
 
-    def accumulator(self, case: Case) -> TransverseModesAccumulator:
-        """An empty memory for it."""
-        return TransverseModesAccumulator(self, case)
-
 
 def decaying(time: Array, rate: float, amplitude: float) -> Array:
     """An exponential."""
     return np.asarray(amplitude * np.exp(-rate * time))
 
 
+@accumulator_of(TransverseModes)
 class TransverseModesAccumulator(ModesAccumulator):
     """Correlators of the polarisations across each wave vector."""
 

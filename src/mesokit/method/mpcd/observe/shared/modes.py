@@ -73,7 +73,6 @@ class ModesAccumulator(ABC):
     """One correlator for each length of wave vector; `polarisations` (K, p, d) say what it sees."""
 
     def __init__(self, observable: Modes, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         vectors = observable.vectors(case)
         self.wavevectors = 2 * np.pi * vectors / np.array(case.box.size, float)

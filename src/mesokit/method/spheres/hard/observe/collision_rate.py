@@ -11,7 +11,7 @@ from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.method.spheres.common.expected.enskog import pair_rate, root_of_temperature
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -40,10 +40,6 @@ class CollisionRate(Observable):
     of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
-    def accumulator(self, case: Case) -> CollisionRateAccumulator:
-        """An empty memory for it."""
-        return CollisionRateAccumulator(self, case)
-
 
 class Few(NamedTuple):
     """What is known of the rate of rare collisions: the least error, theory, and why."""
@@ -53,6 +49,7 @@ class Few(NamedTuple):
     note: str = ""
 
 
+@accumulator_of(CollisionRate)
 class CollisionRateAccumulator(BlockAccumulator):
     """Block averages of what has happened between two samples."""
 

@@ -12,7 +12,7 @@ from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.enskog import fluid_note, speed_factor
 from mesokit.seam.estimate import Estimate, of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -45,18 +45,14 @@ class EquationOfState(Observable):
         if case.particles < 2:
             raise CaseError("equation-of-state: one sphere meets none; expected two or more")
 
-    def accumulator(self, case: Case) -> EquationOfStateAccumulator:
-        """An empty memory for it."""
-        return EquationOfStateAccumulator(self, case)
 
-
+@accumulator_of(EquationOfState)
 class EquationOfStateAccumulator(BlockAccumulator):
     """Block averages of what collisions do between two samples."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
     def __init__(self, observable: EquationOfState, case: Case) -> None:
-        observable.check(case)
         self.name, self.case, self.every = observable.label, case, observable.every
         self.blocks = Blocks((3,))  # virial and collisions per time, twice the kinetic energy
         self.before = np.full(3, np.nan)  # time, virial, collisions at the last sample

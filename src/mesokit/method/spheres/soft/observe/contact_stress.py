@@ -12,7 +12,7 @@ from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import NOT_STEADY, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -44,16 +44,12 @@ class ContactStress(Observable):
         if case.particles < 2:
             raise CaseError("1 sphere; expected 2 at least")
 
-    def accumulator(self, case: Case) -> ContactStressAccumulator:
-        """An empty memory for it."""
-        return ContactStressAccumulator(self, case)
 
-
+@accumulator_of(ContactStress)
 class ContactStressAccumulator(BlockAccumulator):
     """Block averages of pressures, temperature, contacts, and flux and weight along gravity."""
 
     def __init__(self, observable: ContactStress, case: Case) -> None:
-        observable.check(case)
         self.name, self.case = observable.label, case
         self.volume = float(np.prod(case.box.size))
         self.floor = _floor(case)
