@@ -131,7 +131,6 @@ class Shape(Wall):
         return {"surface": self.surface}
 
     def bodies(self, room: Room, label: str) -> list[Body]:
-        """What it is made of: a body for each surface, named after it or `label`."""
         name = self.name or label
         return [Body(name, self.surface, self.virtual, self.pieces(room), self.turning(room))]
 

@@ -111,7 +111,6 @@ class FlowFramesAccumulator:
         self.sums = np.zeros((2 + self.case.box.dimension, *self.bins))  # number, mass, momentum
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         if self.samples == 0:
             self.positions.append(fluid.positions(self.ids).astype(np.float32))
         number, mass, momentum, _ = fluid.moments(self.axes, self.bins)
@@ -138,7 +137,6 @@ class FlowFramesAccumulator:
         return np.concatenate([densities, velocity]).astype(np.float32)
 
     def state(self) -> State:
-        """All it has to remember."""
         return {
             "frames": _stack(self.frames, (len(self.parts), *self.bins)),
             "positions": _stack(self.positions, (len(self.ids), self.case.box.dimension)),
@@ -149,7 +147,6 @@ class FlowFramesAccumulator:
         }
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.frames, self.positions = list(state["frames"]), list(state["positions"])
         self.times = [float(time) for time in state["times"]]
         self.sums = np.array(state["sums"])

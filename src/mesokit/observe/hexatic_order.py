@@ -49,7 +49,6 @@ class HexaticOrderAccumulator(BlockAccumulator):
         self.name, self.blocks = observable.label, Blocks((2,))
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         psi = psi_6(spheres.positions(), spheres.box)
         self.blocks.add([np.abs(psi).mean(), abs(psi.mean())])
 

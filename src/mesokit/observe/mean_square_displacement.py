@@ -132,7 +132,6 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         return self.observable.of == "centres"
 
     def observe(self, engine: Particles) -> None:
-        """Take one sample."""
         position = engine.positions(self.ids, unwrapped=True)[:, list(self.axes)]
         if self.centres:
             position = position.reshape(self.theory.length, -1, len(self.axes)).mean(axis=0)

@@ -172,7 +172,6 @@ class RadialDistributionAccumulator(BlockAccumulator):
         return group.beads(min(group.number, most))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         found = self.counts(fluid, self.edges) / self.shells
         if len(self.near):
             beyond = self.counts(fluid, self.near) / shells(self.near, self.case.box.dimension)

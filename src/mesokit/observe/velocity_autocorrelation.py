@@ -99,7 +99,6 @@ class VelocityAutocorrelationAccumulator(BlockAccumulator):
         self.origins = Origins(len(self.ids), len(self.axes), max_lag)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         velocity = fluid.velocities(self.ids)[:, self.axes]
         self.origins.add(velocity, lambda old, new: np.einsum("ij,ij->i", old, new))
 

@@ -108,7 +108,6 @@ class VelocityDistributionAccumulator(BlockAccumulator):
         self.blocks = Blocks((2 * observable.bins + 2,))
 
     def observe(self, engine: Any) -> None:
-        """Take one sample."""
         u = self.theory.numbers(engine)
         shares, squares = [], []
         for k, values in enumerate((u[:, self.axis], np.linalg.norm(u, axis=1))):

@@ -112,7 +112,6 @@ class Table(FromContents, Pair):
 
     @property
     def reach(self) -> float:
-        """Distance beyond which there is no force."""
         return float(self.rows[-1, 0])
 
     @property

@@ -187,7 +187,6 @@ class FilmReporter(Reporter):
     noun = "frame"
 
     def amount(self, steps: int) -> str:
-        """How much there is to do."""
         return f"{steps} frames"
 
     def speed(self, rate: float) -> str:

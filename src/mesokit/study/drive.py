@@ -52,11 +52,9 @@ class StudyReporter(Reporter):
         super().update(step)
 
     def amount(self, steps: int) -> str:
-        """How much there is to do."""
         return f"{self.runs - self.ended} of {self.runs} runs to do"
 
     def count(self) -> str:
-        """How much is done."""
         return f"{self.ended} of {self.runs} runs"
 
     def words(self, step: int) -> str:

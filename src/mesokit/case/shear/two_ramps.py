@@ -53,7 +53,6 @@ class InStages(ShearHistory):
 
     @property
     def largest(self) -> float:
-        """Largest size of the shear rate."""
         before, first, second = self.stages()
         later = before + first.change
         return max(map(abs, (before, later, later + (second.change if second else 0.0))))

@@ -57,7 +57,6 @@ class FieldAccumulator(BlockAccumulator):
         self.blocks = Blocks((width, *self.bins), capacity=CAPACITY)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         self.blocks.add(self.sample(*fluid.moments(self.axes, self.bins)))
 
     @abstractmethod

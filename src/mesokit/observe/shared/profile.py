@@ -65,7 +65,6 @@ class ProfileAccumulator(BlockAccumulator):
         self.ids: NDArray[np.int64] | None = None  # of particles that count, None if all do
 
     def observe(self, engine: Any) -> None:
-        """Take one sample."""
         self.blocks.add(self.sums(engine))
 
     @abstractmethod

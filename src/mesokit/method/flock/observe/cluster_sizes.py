@@ -73,7 +73,6 @@ class ClusterSizesAccumulator(BlockAccumulator):
         self.blocks = Blocks(self.bins + 2)
 
     def observe(self, engine: Any) -> None:
-        """Take one sample."""
         sizes = clusters(engine.positions(), self.near, self.around)
         number = self.case.particles
         of_size = np.floor(np.log2(sizes) + 1e-9).astype(int)

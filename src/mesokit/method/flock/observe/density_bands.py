@@ -66,7 +66,6 @@ class DensityBandsAccumulator(BlockAccumulator):
         self.waves = np.exp(-2j * np.pi * wave * np.arange(FINE) / FINE)
 
     def observe(self, engine: Any) -> None:
-        """Take one sample."""
         headings = engine.headings()
         _, mean = mean_heading(headings)
         axis = int(np.argmax(np.abs(mean))) if self.axis is None else self.axis

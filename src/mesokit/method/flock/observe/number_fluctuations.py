@@ -96,7 +96,6 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
         super().restore(pack(order=self.order) | dict(state))
 
     def observe(self, engine: Any) -> None:
-        """Take one sample."""
         places = engine.positions()
         self.order.add(mean_heading(engine.headings())[0])
         self.blocks.add(

@@ -57,7 +57,6 @@ class PolarOrderAccumulator(BlockAccumulator):
         self.blocks, self.series = Blocks(3), TimeSeries(1 + case.box.dimension)
 
     def observe(self, engine: Any) -> None:
-        """Take one sample."""
         order, mean = mean_heading(engine.headings())
         self.blocks.add([order, order**2, order**4])
         self.series.add(engine.time, [order, *mean])

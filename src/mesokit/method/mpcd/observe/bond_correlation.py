@@ -64,7 +64,6 @@ class BondCorrelationAccumulator:
         self.origins = [Origins(len(self.beads), size, lags) for _ in self.pairs]
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         bonds = r[:, self.ends[:, 1]] - r[:, self.ends[:, 0]]
         shape = bonds.shape[1:]
@@ -77,11 +76,9 @@ class BondCorrelationAccumulator:
             origins.add(bonds.reshape(len(bonds), -1), product)
 
     def state(self) -> State:
-        """All it has to remember."""
         return pack(**dict(zip(self.names(), self.origins, strict=True)))
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         for name, origins in zip(self.names(), self.origins, strict=True):
             origins.restore(unpack(state, name))
 

@@ -53,7 +53,6 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         self.bonds = bonds_of(case, observable.kind)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         d, bonds = self.case.box.dimension, self.bonds.stop - self.bonds.start
         units = [1.0] * (2 * d * d + 1)
         sums = fluid.sums_of_bonds(self.products, self.own.groups, units, self.bonds)

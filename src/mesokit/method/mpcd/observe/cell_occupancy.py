@@ -69,7 +69,6 @@ class CellOccupancyAccumulator(BlockAccumulator):
         return np.asarray(whole)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         (number,) = fluid.sums_of_particles(self.cell_of, len(self.cells), [1.0])
         held = number.astype(np.int64)[self.cells]
         bins = np.clip(held - self.first, 0, len(self.numbers) - 1)

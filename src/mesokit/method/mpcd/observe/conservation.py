@@ -57,7 +57,6 @@ class ConservationAccumulator:
         self.pooled = 1  # runs
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         number, momentum, energy = fluid.totals()
         warmth = temperature(self.case, number, momentum, energy)
         bound = [fluid.potential_energy()] if self.bonded else []
@@ -80,7 +79,6 @@ class ConservationAccumulator:
         self.counts = np.array([kept, stride, samples + 1])
 
     def state(self) -> State:
-        """All it has to remember."""
         return pack(
             blocks=self.blocks,
             rows=self.rows[: self.counts[0]],
@@ -90,7 +88,6 @@ class ConservationAccumulator:
         )
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.blocks = Blocks.from_state(unpack(state, "blocks"))
         self.rows[: len(state["rows"])] = state["rows"]
         self.first, self.drift = np.array(state["first"]), np.array(state["drift"])

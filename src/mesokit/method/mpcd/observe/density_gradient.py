@@ -88,7 +88,6 @@ class DensityGradientAccumulator(BlockAccumulator):
         self.blocks = Blocks((self.slices,))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         number = fluid.moments((self.axis,), (self.bins,))[0]
         self.blocks.add(number.reshape(self.repeats, self.slices).sum(axis=0))
 

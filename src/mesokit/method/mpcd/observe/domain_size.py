@@ -77,7 +77,6 @@ class DomainSizeAccumulator(BlockAccumulator):
         self.series, self.samples = TimeSeries(1, ROWS), np.zeros(1, np.int64)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         (colour,) = fluid.sums_of_particles(self.colour_of, math.prod(self.size), [1.0])
         power = abs(np.fft.rfftn(colour.reshape(self.size))[self.counts]) ** 2 / self.noise
         self.series.add(fluid.time, [self.size_of(power)])

@@ -74,7 +74,6 @@ class DynamicModuliAccumulator(BlockAccumulator):
         self.samples = np.zeros(1, np.int64)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         time = fluid.time
         if np.isnan(self.began[0]):
             self.began[0] = time

@@ -71,7 +71,6 @@ class FlowRateAccumulator(BlockAccumulator):
         self.blocks, self.series = Blocks(), TimeSeries(1)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         _, momentum, _ = fluid.totals()
         velocity = momentum[self.axis] / self.mass
         self.blocks.add(velocity)

@@ -103,7 +103,6 @@ class ForcesAccumulator(BlockAccumulator):
         self.series = TimeSeries(size, min(MOST_ROWS, 2 * max(NUMBERS // size // 2, 1)))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         impulse, steps = self.walls.take(fluid)
         if steps:
             taken = impulse.ravel() / (steps * self.case.fluid.timestep)

@@ -131,7 +131,6 @@ class MoleculeHistogramAccumulator:
         return self.observable.of == "end-to-end" and self.observable.axis is not None
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         found = self.numbers(fluid)
         width = self.edges[1] - self.edges[0]
         place = np.floor((found - self.edges[0]) / width).astype(int)
@@ -160,11 +159,9 @@ class MoleculeHistogramAccumulator:
         return np.minimum(cosine, np.nextafter(1.0, 0.0))  # 1 is in the last bin
 
     def state(self) -> State:
-        """All it has to remember."""
         return self.means.state()
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.means.restore(state)
 
     def pool(self, other: MoleculeHistogramAccumulator) -> None:

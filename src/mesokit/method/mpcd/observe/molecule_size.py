@@ -55,7 +55,6 @@ class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
         super().__init__(observable, case, parts, observable.kind, len(self.beads))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         each = gyration(r)
         tensors, squares = [each], [(each**2).mean(axis=0)]

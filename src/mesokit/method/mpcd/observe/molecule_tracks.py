@@ -89,7 +89,6 @@ class MoleculeTracksAccumulator(BlockAccumulator):
         return ["gyration", *ends, *axes, *(f"v{a}" for a in axes)]
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         shape, d = (*self.beads.shape, self.dimension), self.dimension
         ids = self.beads.ravel()
         r = fluid.whole_positions(ids).reshape(shape)

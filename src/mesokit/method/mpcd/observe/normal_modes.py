@@ -76,7 +76,6 @@ class NormalModesAccumulator:
         self.correlators = [MultipleTau(shape, max_lag=max_lag, pooled=2) for _ in self.eigenvalues]
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         for correlator, x in zip(
             self.correlators, np.einsum("mid,ip->pmd", r, self.vectors), strict=True
@@ -84,11 +83,9 @@ class NormalModesAccumulator:
             correlator.add(x)
 
     def state(self) -> State:
-        """All it has to remember."""
         return pack(**{f"mode_{p}": c for p, c in enumerate(self.correlators)})
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.correlators = [
             MultipleTau.from_state(unpack(state, f"mode_{p}")) for p in range(self.count)
         ]

@@ -129,7 +129,6 @@ class ProbeAccumulator(BlockAccumulator):
         self.last = np.zeros(d)  # the velocity where nobody is there to tell a new one
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         mass, d = self.case.fluid.mass, self.dimension
         units = [mass, *[math.sqrt(mass * self.case.fluid.kT)] * d]
         m, *momentum = fluid.sums_of_particles(self.inside, 1, units)[:, 0]
@@ -147,7 +146,6 @@ class ProbeAccumulator(BlockAccumulator):
         return np.zeros(len(m), np.int64), [m, *(m * some.velocities[inside].T)]
 
     def pool(self, other: ProbeAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         self.blocks.pool(other.blocks)
         self.others.append(other.series)
 

@@ -125,7 +125,6 @@ class ResidenceTimeAccumulator(EventAccumulator):
         self.runs: list[ResidenceTimeAccumulator] = [self]  # those that are pooled
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         inside, time, now = self.within(self.each(fluid)), float(fluid.time), self.now
         self.samples_here += 1
         self.durations.look(time)

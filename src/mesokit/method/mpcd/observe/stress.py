@@ -63,7 +63,6 @@ class StressAccumulator(TensorAccumulator):
         super().__init__(observable, case, (*self.given, "total"))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         parts = [fluid.stress[name] for name in self.given]
         self.blocks.add(np.stack([*parts, sum(parts[1:], parts[0])]))
 
@@ -105,7 +104,6 @@ class StressAccumulator(TensorAccumulator):
         return scale * float(squares * kept_of_modes / self.blocks.series) ** 0.5
 
     def summed(self, part: int, weight: Array) -> tuple[float, float]:
-        """Sum of the elements of a part with these weights (d, d), and its standard error."""
         value, error = super().summed(part, weight)
         return value, float(np.maximum(error, self.least(weight) if self.bonds_in(part) else 0.0))
 
@@ -114,7 +112,6 @@ class StressAccumulator(TensorAccumulator):
         return self.bonded_beads and part % len(self.parts) >= 2
 
     def errors(self) -> Array:
-        """Standard errors (parts, d, d)."""
         found, d = self.blocks.error(), self.case.box.dimension
         if not self.blocks.count or not self.bonded_beads:
             return found

@@ -161,7 +161,6 @@ class StressInTimeAccumulator(BlockAccumulator):
         self.first, self.samples = np.array(state["first"]), np.array(state["samples"])
 
     def pool(self, other: StressInTimeAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         super().pool(other)
         self.others.append(other)
 

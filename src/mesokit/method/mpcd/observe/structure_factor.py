@@ -106,7 +106,6 @@ class StructureFactorAccumulator(BlockAccumulator):
         return np.asarray(np.add.reduceat(each, self.starts, axis=-1) / self.members)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         if self.of == "chains":
             beads = self.beads
             r = fluid.whole_positions(beads.ravel()).reshape(*beads.shape, -1)
@@ -146,7 +145,6 @@ class StructureFactorAccumulator(BlockAccumulator):
         return found
 
     def pool(self, other: StructureFactorAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         if not self.others:
             self.others = self.of_waves()
         self.others += other.of_waves()

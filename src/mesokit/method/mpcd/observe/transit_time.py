@@ -84,7 +84,6 @@ class TransitTimeAccumulator(EventAccumulator):
         self.velocity = MeansOverMolecules(len(self.beads), 1, self.everything)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         place = self.sign * self.each(fluid)[:, :, self.axis].mean(axis=1)
         time, now = float(fluid.time), self.now
         self.samples_here += 1

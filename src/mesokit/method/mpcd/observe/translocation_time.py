@@ -88,7 +88,6 @@ class TranslocationTimeAccumulator(EventAccumulator):
         self.failed = 0  # in pooled runs
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         x = self.sign * self.each(fluid)[:, :, self.axis] - self.position
         front, back, time = x.max(axis=1), x.min(axis=1), float(fluid.time)
         self.samples_here += 1
@@ -130,7 +129,6 @@ class TranslocationTimeAccumulator(EventAccumulator):
         return bool(through.any() or returned.any())
 
     def pool(self, other: EventAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         assert isinstance(other, TranslocationTimeAccumulator)
         super().pool(other)
         self.failed += other.in_vain

@@ -154,7 +154,6 @@ class WakeAccumulator(BlockAccumulator):
         self.blocks, self.whole = Blocks((2, bins)), Blocks()
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         mass = self.case.fluid.mass
         units = [math.sqrt(mass * self.case.fluid.kT), mass]
         self.blocks.add(fluid.sums_of_particles(self.behind, len(self.centres), units))

@@ -72,7 +72,6 @@ class WallStressAccumulator(BlockAccumulator):
         self.blocks = Blocks((2, d))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         taken, steps = self.walls.take(fluid)
         if steps:
             momentum = taken[:, : self.case.box.dimension]

@@ -89,12 +89,10 @@ class FreeMolecule(Molecule):
 
     @property
     def bonds(self) -> Links:
-        """Pairs of beads that are linked."""
         return self.linked
 
     @property
     def angles(self) -> Links:
-        """Triples of beads, the second of which two bonds share."""
         return self.bent
 
     @property

@@ -63,18 +63,15 @@ class EventAccumulator(BlockAccumulator):
         return r.reshape(*self.beads.shape, -1)
 
     def state(self) -> State:
-        """All it has to remember."""
         now = {f"now/{name}": array for name, array in self.now.items()}
         return super().state() | pack(samples=self.samples_here, **now)
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         super().restore(state)
         self.samples_here = int(state["samples"])
         self.now = {name: np.array(array) for name, array in unpack(state, "now").items()}
 
     def pool(self, other: EventAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         super().pool(other)
         self.others += [(len(other.beads), other.samples_here), *other.others]
 

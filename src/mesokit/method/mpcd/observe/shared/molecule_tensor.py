@@ -77,7 +77,6 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         self.scatter.add(np.concatenate([elements.reshape(len(traces), -1), traces[:, None]], 1))
 
     def pool(self, other: BlockAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         assert isinstance(other, MoleculeTensorAccumulator)
         super().pool(other)
         self.number = max(self.number, other.number)
@@ -138,7 +137,6 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         return np.sqrt(variance)
 
     def errors(self) -> Array:
-        """Standard errors (parts, d, d)."""
         found = self.blocks.error()
         if not self.blocks.count:
             return found

@@ -55,7 +55,6 @@ class ClusterSizeAccumulator(BlockAccumulator):
         self.repeats = np.array([k not in closed for k in range(case.box.dimension)])
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         period = np.where(self.repeats, spheres.box, 0.0)  # 0: this axis does not repeat
         sizes = cluster_sizes(spheres.positions(), spheres.diameters(), period, self.gap)
         place = np.frexp(sizes.astype(float))[1] - 1

@@ -68,7 +68,6 @@ class GranularTemperatureAccumulator(Samples):
         self.runs = 1
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         n, d = spheres.n, spheres.dimension
         energies, (_, momentum, _) = spheres.energies(), spheres.totals()
         masses = spheres.masses()

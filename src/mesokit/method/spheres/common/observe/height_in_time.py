@@ -51,7 +51,6 @@ class HeightInTimeAccumulator(Samples):
         super().__init__(2)  # height, velocity upwards
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         masses, up = spheres.masses(), -math.copysign(1.0, self.gravity)
         place = spheres.positions(unwrapped=True)[:, self.axis]
         height = place if up > 0 else self.case.box.size[self.axis] - place

@@ -58,7 +58,6 @@ class HeightProfileAccumulator(BlockAccumulator):
         self.blocks = Blocks((observable.bins + 2,))
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         place = spheres.positions(unwrapped=True)[:, self.axis]
         height = place if self.gravity < 0 else self.depth - place
         kT = 2 * spheres.totals()[2] / (spheres.dimension * spheres.n)

@@ -48,12 +48,10 @@ class SquareWell(SphereCollision):
 
     @property
     def reach(self) -> float:
-        """Distance in diameters at which two spheres first feel one another."""
         return self.width
 
     @property
     def energy_within(self) -> float:
-        """Potential energy of two spheres nearer than `reach`."""
         return -self.depth
 
     def kernel(self) -> Well:

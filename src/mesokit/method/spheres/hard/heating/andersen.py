@@ -28,7 +28,6 @@ class Andersen(Heating):
         return self.kT
 
     def act(self, motion: Motion, interval: float) -> None:
-        """Change the velocities, after so much time."""
         n, d = motion.velocities.shape
         chance = uniform_rows(motion.seed, motion.turn, CHANCE, n)
         chosen = chance < -math.expm1(-self.rate * interval)

@@ -30,7 +30,6 @@ class Kicks(Heating):
         return True
 
     def act(self, motion: Motion, interval: float) -> None:
-        """Change the velocities, after so much time."""
         n, d = motion.velocities.shape
         kicks = normal_rows(motion.seed, motion.turn, PURPOSE, n, d)
         kicks *= np.sqrt(2 * self.power * interval / (d * motion.masses))[:, None]

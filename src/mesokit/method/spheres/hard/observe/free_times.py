@@ -87,7 +87,6 @@ class FreeTimesAccumulator(BlockAccumulator):
         self.before = now
 
     def pool(self, other: FreeTimesAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         super().pool(other)
         self.edges = np.maximum(self.edges, other.edges)  # zero before the first sample
 

@@ -57,7 +57,6 @@ class ContactStressAccumulator(BlockAccumulator):
         self.blocks = Blocks((7,))
 
     def observe(self, spheres: Any) -> None:
-        """Take one sample."""
         d, stress = spheres.dimension, spheres.stress
         pressures = [-float(np.trace(stress[name])) / d for name in ("kinetic", "pair")]
         still = 0 if self.case.walls else 1  # without walls the momentum is zero

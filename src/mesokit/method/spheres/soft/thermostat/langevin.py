@@ -21,7 +21,6 @@ class Langevin(SoftThermostat):
 
     @property
     def held_kT(self) -> float:
-        """Thermal energy that it holds."""
         return self.kT
 
     def decay(self, timestep: float) -> float:

@@ -22,7 +22,6 @@ class RescaleAll(SoftThermostat):
 
     @property
     def held_kT(self) -> float:
-        """Thermal energy that it holds."""
         return self.kT
 
     @property
