@@ -254,8 +254,7 @@ def _units(case: Case) -> dict[str, Any] | None:
     convert = method_of(case).si
     if case.units is None or convert is None:
         return None
-    record: dict[str, Any] = convert(case).record()
-    return record
+    return dict(convert(case).record())
 
 
 def now() -> str:

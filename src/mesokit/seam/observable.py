@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod, update_abstractmethods
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +34,7 @@ class Accumulator(Protocol):
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
 
-    def pool(self, other: Any) -> None:
+    def pool(self, other: Self) -> None:
         """Take in the samples of an independent run of the same case: only to read from then on."""
 
     def result(self) -> Result:
@@ -103,7 +103,7 @@ def accumulator_of(observable: type[Observable]) -> Callable[[T], T]:
     return mark
 
 
-def pack(**parts: Any) -> State:
+def pack(**parts: object) -> State:
     """The states of several parts (Blocks, MultipleTau, arrays) as one.
 
     >>> pack(rows=np.zeros(2))
@@ -159,7 +159,7 @@ class BlockAccumulator(ABC):
                 kind = type(part) if isinstance(part, int | float) else np.array
                 setattr(self, name, kind(state[name]))
 
-    def pool(self, other: Any) -> None:
+    def pool(self, other: Self) -> None:
         """Take in the samples of an independent run of the same case: only to read."""
         for name in self.memory:
             part = getattr(self, name)
