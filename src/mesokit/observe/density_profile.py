@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 
 class DensityInSlices(Protocol):
@@ -30,7 +31,7 @@ class DensityInSlices(Protocol):
     label: str
     ids: NDArray[np.int64] | None
 
-    def sums(self, profile: ProfileAccumulator, engine: Any) -> Array:
+    def sums(self, profile: ProfileAccumulator, engine: RunningFluid | RunningSpheres) -> Array:
         """Those numbers (width, bins) at this moment."""
 
     def compared(self, profile: ProfileAccumulator, density: Estimate, sums: Array) -> Compared:
@@ -81,7 +82,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
         self.ids = self.theory.ids
         self.unit, self.slice_volume = case.box.density_unit, case.box.volume / self.bins
 
-    def sums(self, engine: Any) -> Array:
+    def sums(self, engine: RunningFluid | RunningSpheres) -> Array:
         """What the method counts."""
         return self.theory.sums(self, engine) / self.slice_volume
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 
 class TemperatureInSlices(Protocol):
@@ -80,7 +81,7 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
             self.counts += (max(1, round(case.box.size[self.across] * observable.bins_per_cell)),)
         self.blocks = Blocks((width, *self.counts))
 
-    def sums(self, engine: Any) -> Array:
+    def sums(self, engine: RunningFluid | RunningSpheres) -> Array:
         """Number, mass, sum of m v^2 and momentum."""
         number, mass, momentum, energy = self.moments(engine)
         return np.concatenate([[number, mass, energy], momentum])

@@ -20,6 +20,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 FARTHEST = 5.0  # thermal velocities: what is beyond counts in the last bins
 
@@ -43,7 +44,7 @@ class Velocities(Protocol):
     taken_by_energy: float
     kept_energy: float
 
-    def numbers(self, engine: Any) -> Array:
+    def numbers(self, engine: RunningFluid | RunningSpheres) -> Array:
         """Velocities (n, d) over sqrt(kT/m)."""
 
     def warm(self, runs: int) -> float:
@@ -107,7 +108,7 @@ class VelocityDistributionAccumulator(BlockAccumulator):
         self.of = [chi_square.classes(p, number) for p in self.probability]
         self.blocks = Blocks((2 * observable.bins + 2,))
 
-    def observe(self, engine: Any) -> None:
+    def observe(self, engine: RunningFluid | RunningSpheres) -> None:
         u = self.theory.numbers(engine)
         shares, squares = [], []
         for k, values in enumerate((u[:, self.axis], np.linalg.norm(u, axis=1))):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 
 class FlowInSlices(Protocol):
@@ -79,7 +80,7 @@ class VelocityProfileAccumulator(ProfileAccumulator):
         self.theory = observable.theory(case)
         self.component, self.ids = self.theory.component, self.theory.ids
 
-    def sums(self, engine: Any) -> Array:
+    def sums(self, engine: RunningFluid | RunningSpheres) -> Array:
         """Momentum along the component, and mass."""
         _, mass, momentum, _ = self.moments(engine)
         return np.stack([momentum[self.component], mass])

@@ -149,7 +149,7 @@ def columns(case: Case) -> Columns:
     """Where the middle of all particles has gone to, of which the log of a run may tell."""
     names = tuple(f"centre {axis}" for axis in case.box.axes)
 
-    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+    def read(engine: Brownians, wanted: Collection[str]) -> dict[str, float]:
         centre = engine.positions(unwrapped=True).mean(axis=0)
         return {name: float(centre[names.index(name)]) for name in wanted}
 

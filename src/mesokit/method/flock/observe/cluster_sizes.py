@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.flock.engine.flocks import Flocks
     from mesokit.seam.engine import Array
 
 MOST_PAIRS = 5e7  # in one sample: more take gigabytes
@@ -72,7 +73,7 @@ class ClusterSizesAccumulator(BlockAccumulator):
         self.bins = case.particles.bit_length()
         self.blocks = Blocks(self.bins + 2)
 
-    def observe(self, engine: Any) -> None:
+    def observe(self, engine: Flocks) -> None:
         sizes = clusters(engine.positions(), self.near, self.around)
         number = self.case.particles
         of_size = np.floor(np.log2(sizes) + 1e-9).astype(int)

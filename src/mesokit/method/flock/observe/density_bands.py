@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.flock.engine.flocks import Flocks
     from mesokit.seam.engine import Array
 
 MOST_BINS = 2**16
@@ -65,7 +66,7 @@ class DensityBandsAccumulator(BlockAccumulator):
         wave = np.arange(1, WAVES + 1)[:, None]
         self.waves = np.exp(-2j * np.pi * wave * np.arange(FINE) / FINE)
 
-    def observe(self, engine: Any) -> None:
+    def observe(self, engine: Flocks) -> None:
         headings = engine.headings()
         _, mean = mean_heading(headings)
         axis = int(np.argmax(np.abs(mean))) if self.axis is None else self.axis

@@ -27,6 +27,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.flock.engine.flocks import Flocks
     from mesokit.seam.engine import Array
 
 LARGEST = 0.25  # side of the largest squares unless said, in the shortest length of the box
@@ -95,7 +96,7 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
         """Go on from `state()`, in which earlier versions had no order."""
         super().restore(pack(order=self.order) | dict(state))
 
-    def observe(self, engine: Any) -> None:
+    def observe(self, engine: Flocks) -> None:
         places = engine.positions()
         self.order.add(mean_heading(engine.headings())[0])
         self.blocks.add(

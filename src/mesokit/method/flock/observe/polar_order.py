@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from mesokit.statistics import Blocks, TimeSeries
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.flock.engine.flocks import Flocks
 
 MANY = 30  # birds, from which on their sum at random is as good as normal
 
@@ -56,7 +57,7 @@ class PolarOrderAccumulator(BlockAccumulator):
         self.case, self.name = case, observable.label
         self.blocks, self.series = Blocks(3), TimeSeries(1 + case.box.dimension)
 
-    def observe(self, engine: Any) -> None:
+    def observe(self, engine: Flocks) -> None:
         order, mean = mean_heading(engine.headings())
         self.blocks.add([order, order**2, order**4])
         self.series.add(engine.time, [order, *mean])

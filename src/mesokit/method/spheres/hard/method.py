@@ -46,7 +46,7 @@ def columns(case: Case) -> Columns:
     """Energies and numbers of collisions, of which the log of a run may tell."""
     names = ("translation", "rotation", "potential", "collisions", "wall collisions")
 
-    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+    def read(engine: EventDriven, wanted: Collection[str]) -> dict[str, float]:
         pairs, walls, _ = engine.collisions
         known = {**engine.energies(), "collisions": pairs, "wall collisions": walls}
         return {name: float(known[name]) for name in wanted}

@@ -47,7 +47,7 @@ def columns(case: Case) -> Columns:
     """Energies, of which the log of a run may tell."""
     names = ("translation", "rotation", "potential", "contact")
 
-    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+    def read(engine: SoftEngine, wanted: Collection[str]) -> dict[str, float]:
         known = engine.energies()
         return {name: float(known[name]) for name in wanted}
 

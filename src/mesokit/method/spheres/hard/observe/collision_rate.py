@@ -17,7 +17,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
+    from mesokit.seam.engine import CollidingSpheres
 
 MANY = 25  # collisions, of which blocks know the error
 ENOUGH = 5  # to be expected, where none has been seen, for something to be compared
@@ -60,7 +60,7 @@ class CollisionRateAccumulator(BlockAccumulator):
         self.blocks = Blocks((5,))  # three rates, the root of the temperature, the mean speed
         self.before = np.full(6, np.nan)  # time, three counts, root of temperature, mean speed
 
-    def observe(self, spheres: RunningSpheres) -> None:
+    def observe(self, spheres: CollidingSpheres) -> None:
         """Take one sample: of what has happened since the last."""
         root = root_of_temperature(self.case, spheres.totals()[2])
         speed = float(np.linalg.norm(spheres.velocities(), axis=1).mean())

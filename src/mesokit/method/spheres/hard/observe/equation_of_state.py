@@ -18,7 +18,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
+    from mesokit.seam.engine import CollidingSpheres
 
 
 @component
@@ -57,7 +57,7 @@ class EquationOfStateAccumulator(BlockAccumulator):
         self.blocks = Blocks((3,))  # virial and collisions per time, twice the kinetic energy
         self.before = np.full(3, np.nan)  # time, virial, collisions at the last sample
 
-    def observe(self, spheres: RunningSpheres) -> None:
+    def observe(self, spheres: CollidingSpheres) -> None:
         """Take one sample: of what has happened since the last."""
         now = np.array([spheres.time, spheres.virial, spheres.collisions[0]])
         if np.isfinite(self.before[0]) and now[0] > self.before[0]:

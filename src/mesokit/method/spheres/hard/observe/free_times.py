@@ -20,7 +20,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
+    from mesokit.seam.engine import CollidingSpheres
 
 FINE = 256  # bins in which an engine counts
 DILUTE = 0.0025  # packing fraction above which the last partner is in the way of others for long
@@ -76,7 +76,7 @@ class FreeTimesAccumulator(BlockAccumulator):
         self.before = np.zeros(self.bins + 3)
         self.edges: NDArray[np.float64] = np.zeros(self.bins + 1)
 
-    def observe(self, spheres: RunningSpheres) -> None:
+    def observe(self, spheres: CollidingSpheres) -> None:
         """Take one sample: of what has ended since the last."""
         edges, counts, sums = spheres.free_times
         self.edges = np.array(edges[:: FINE // self.bins])

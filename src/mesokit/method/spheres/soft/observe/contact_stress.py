@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.spheres.soft.engine.engine import SoftEngine
 
 PARTS = ("motion", "forces")
 LANDED = 0.1  # of the weight: a bed whose flux is nearer to it has landed
@@ -56,7 +57,7 @@ class ContactStressAccumulator(BlockAccumulator):
         self.unit = "m/tau^2" if case.box.dimension == 2 else "m/(a tau^2)"
         self.blocks = Blocks((7,))
 
-    def observe(self, spheres: Any) -> None:
+    def observe(self, spheres: SoftEngine) -> None:
         d, stress = spheres.dimension, spheres.stress
         pressures = [-float(np.trace(stress[name])) / d for name in ("kinetic", "pair")]
         still = 0 if self.case.walls else 1  # without walls the momentum is zero
