@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mesokit import AT
+from mesokit.method.mpcd.fluid import Species
 from mesokit.method.mpcd.observe import OBSERVABLES as OF_MPCD
-from mesokit.method.mpcd.species import Species
 from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES
 from mesokit.method.spheres.hard.observe import OBSERVABLES as OF_HARD_SPHERES
 from mesokit.method.spheres.soft.observe import OBSERVABLES as OF_SOFT_SPHERES
