@@ -5,9 +5,9 @@ import pytest
 
 from mesokit.report.flow import quiver, streamlines
 from mesokit.report.flow.data import Flow
+from mesokit.report.flow.follow import Nodes, lines
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.smooth import rim_filled
-from mesokit.report.flow.streamlines import Nodes, lines
 
 LOW, HIGH = np.zeros(2), np.array([40.0, 20.0])
 

@@ -187,6 +187,7 @@ class FilmReporter(Reporter):
     noun = "frame"
 
     def amount(self, steps: int) -> str:
+        """How much there is to do."""
         return f"{steps} frames"
 
     def speed(self, rate: float) -> str:

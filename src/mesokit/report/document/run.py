@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
-
-import numpy as np
 
 from mesokit.errors import MesokitError
 from mesokit.io.atomic import write_text
 from mesokit.io.pooled import pooled_words
 from mesokit.io.run_directory import RunDirectory
-from mesokit.report.document.card import lines_of
+from mesokit.report.document.comparisons import lines_of
+from mesokit.report.document.conservation import changes
 from mesokit.report.document.pictures import figures, films_of, pictures_of_flow
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
 from mesokit.report.document.template import render
@@ -23,24 +22,6 @@ from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-
-SERIES = "conservation"  # the quantity that is a series of such numbers
-
-
-def changes(results: Iterable[Result]) -> list[tuple[str, ...]]:
-    """Name with unit, first, mean and last value, and largest change since the first sample."""
-    found = []
-    for result in results:
-        if result.quantity != SERIES or not len(result.value):
-            continue
-        for name, column in zip(result.x["component"], result.value.T, strict=True):
-            unit = result.units.get(str(name), "")
-            words = f"{str(name).replace('_', ' ')}{f', {unit}' if unit else ''}"
-            largest = np.max(np.abs(column - column[0]))
-            numbers = (column[0], column.mean(), column[-1], largest)
-            found.append((words, *(f"{x:.6g}" for x in numbers)))
-    return found
-
 
 HEADINGS = {  # of the sections that a run may have, in the order of the page
     "warnings": "Warnings", "lines": "Measured and expected", "figures": "Figures",
