@@ -1,7 +1,5 @@
 """What a wall does to the particles that hit it."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 from pydantic import field_validator

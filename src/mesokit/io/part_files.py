@@ -1,7 +1,5 @@
 """Files from which parts were made, such as a force, kept in the folder of a run."""
 
-from __future__ import annotations
-
 import dataclasses
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """What a run was made from: the sources of mesokit, and the files and runs that it starts from."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import hashlib

@@ -4,8 +4,6 @@ A kernel is a function that calls one part, so that its own code is found in the
 other. Machine code of kernels is kept too, for one processor: a second start compiles nothing.
 """
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import hashlib

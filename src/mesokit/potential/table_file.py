@@ -1,7 +1,5 @@
 """Text files of a potential: columns of distance, energy and, if there is one, force."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -5,8 +5,6 @@ An engine holds the state of a simulation in memory and moves it on. Each method
 arrays here are in the order of particle numbers, whatever the layout in memory is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Protocol
 

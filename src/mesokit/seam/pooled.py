@@ -1,7 +1,5 @@
 """Samples of several runs as one."""
 
-from __future__ import annotations
-
 from mesokit.case.component import show
 from mesokit.errors import RunError
 from mesokit.seam.observable import Accumulator

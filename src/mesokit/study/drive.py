@@ -1,7 +1,5 @@
 """Carries the runs of a study to their ends, and tells how far they are."""
 
-from __future__ import annotations
-
 import signal
 import time
 from collections.abc import Sequence

@@ -3,8 +3,6 @@
 Start-up, cessation, ramp and step strain are all of this kind, so that one kernel serves them.
 """
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The fluid: how dense it is, how it collides, what drives it."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.case.component import component, param

@@ -4,8 +4,6 @@ What the loops over a strip need lies in rows of one array: the compiler then se
 overlap, and does several birds at once.
 """
 
-from __future__ import annotations
-
 from mesokit.geometry.protocol import exposed, first_hit, happens, homed, settled, unmet
 from mesokit.geometry.solids.bodies import (
     RULE,

@@ -1,7 +1,5 @@
 """External forces on beads of solutes, all or some of them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

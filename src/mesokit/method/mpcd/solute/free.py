@@ -1,7 +1,5 @@
 """Molecules whose bonds are a list: dendrimers, networks, whatever hangs together."""
 
-from __future__ import annotations
-
 import functools
 from pathlib import Path
 

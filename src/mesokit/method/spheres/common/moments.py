@@ -1,7 +1,5 @@
 """Sums over spheres in equal bins of the box."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """What observables remember that keep each sample: a series in time."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from mesokit.seam.observable import BlockAccumulator

@@ -1,7 +1,5 @@
 """What a collision rule of hard spheres is."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from typing import Any

@@ -1,7 +1,5 @@
 """Collisions with a bath."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

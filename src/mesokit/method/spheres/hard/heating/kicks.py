@@ -1,7 +1,5 @@
 """Random kicks to all spheres."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

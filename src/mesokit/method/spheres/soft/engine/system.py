@@ -1,7 +1,5 @@
 """Soft spheres in memory: what is laid out how, sorted when, and read by particle number."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

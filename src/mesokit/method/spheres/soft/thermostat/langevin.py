@@ -1,7 +1,5 @@
 """Friction and noise of a bath that is not shown."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

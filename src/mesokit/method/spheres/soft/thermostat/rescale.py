@@ -1,7 +1,5 @@
 """Velocities scaled to a temperature."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from mesokit.case.component import component, param, tag
