@@ -15,7 +15,8 @@ from mesokit import Conservation, Plates, Stress, TransverseModes, VelocityField
 from mesokit.case.trajectory import Trajectory
 from mesokit.errors import RunError
 from mesokit.io import h5md
-from mesokit.io.run_directory import RunDirectory, provenance
+from mesokit.io.provenance import provenance
+from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
 from tests.helpers.fake_fluid import FakeFluid
 
