@@ -18,6 +18,7 @@ from mesokit.seam.estimate import Estimate, fit
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -34,6 +35,7 @@ class Displacement(Protocol):
 
     It is made of a case and the observable, and raises CaseError where there is nothing to follow.
     `axes` are those that count; `length` particles make a molecule, of which there are `number`.
+    What is not overridden holds for particles without a theory.
     """
 
     axes: tuple[int, ...]
@@ -42,24 +44,31 @@ class Displacement(Protocol):
 
     def beads(self, wanted: int) -> Integers:
         """Numbers (molecules, length) of so many molecules, evenly spread, or of all."""
+        return spread_ids(wanted, self.number)[:, None]
 
     def expected(self, steps: Integers) -> Array | None:
         """The mean square displacement after so many steps; None without a theory."""
+        return None
 
     def coefficient(self) -> tuple[float, str]:
         """The diffusion coefficient, nan without a theory, and what to say of it."""
+        return math.nan, ""
 
     def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line, inf if never."""
+        return 0.0
 
     def grows(self) -> bool:
         """Whether D grows with the lag: in 2D where all momentum is kept."""
+        return False
 
     def level_from(self) -> float:
         """The lag from which on the displacement no longer grows, inf if it always does."""
+        return math.inf
 
     def legend(self) -> str:
         """What the theory is called in a figure."""
+        return ""
 
 
 @component

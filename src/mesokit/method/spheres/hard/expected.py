@@ -20,7 +20,7 @@ from mesokit.method.spheres.common.expected.equilibrium import (
 )
 from mesokit.method.spheres.common.expected.neighbours import NeighboursOfSpheres
 from mesokit.method.spheres.common.velocity_memory import VelocityMemory
-from mesokit.statistics import spread_ids
+from mesokit.observe import mean_square_displacement
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -66,7 +66,7 @@ def _keep_energy(case: Case) -> bool:
 DECAYED = 5.0  # times of the velocity's memory after which motion is diffusive
 
 
-class Displacement:
+class Displacement(mean_square_displacement.Displacement):
     """Ballistic at first, diffusive when the velocity is forgotten: 2 D (t - T + T exp(-t/T)) along
     each axis, T = m D/kT, with the D of Enskog."""
 
@@ -82,10 +82,6 @@ class Displacement:
         self.case, self.length, self.number = case, 1, case.particles
         self.timestep = case.spheres.timestep
         self.diffusion, self.memory = enskog(case)
-
-    def beads(self, wanted: int) -> Integers:
-        """Numbers (n, 1) of so many spheres, evenly spread."""
-        return spread_ids(wanted, self.number)[:, None]
 
     def expected(self, steps: Integers) -> Array | None:
         """The displacement after so many steps, None without a theory."""
@@ -107,10 +103,6 @@ class Displacement:
         """In 2D, where neither walls nor heating take momentum."""
         kept = not (self.case.walls or self.case.spheres.heating)
         return self.case.box.dimension == 2 and kept and self.number > 1
-
-    def level_from(self) -> float:
-        """Never: nothing holds them."""
-        return math.inf
 
     def legend(self) -> str:
         """Whose law it is."""

@@ -10,12 +10,11 @@ from mesokit.geometry.walls import closed_axes
 from mesokit.method.spheres.common.expected.cooling import Cooling, haff_time, uniform
 from mesokit.method.spheres.common.expected.equilibrium import Equilibrium, still_walls, surfaces
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
+from mesokit.observe import mean_square_displacement
 from mesokit.seam.method import method_of
-from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.seam.engine import Array, Integers
 
 
 def equilibrium(case: Case) -> Equilibrium | None:
@@ -37,7 +36,7 @@ def equilibrium(case: Case) -> Equilibrium | None:
     return Equilibrium(held, touching)
 
 
-class Displacement:
+class Displacement(mean_square_displacement.Displacement):
     """What the observable asks; theory knows of no such fluid."""
 
     answers = "mean-square-displacement"
@@ -54,35 +53,11 @@ class Displacement:
         self.case, self.length, self.number = case, 1, case.particles
         self.timestep = method_of(case).timestep(case)
 
-    def beads(self, wanted: int) -> Integers:
-        """Numbers (n, 1) of so many spheres, evenly spread."""
-        return spread_ids(wanted, self.number)[:, None]
-
-    def expected(self, steps: Integers) -> Array | None:
-        """Nothing."""
-        return None
-
-    def coefficient(self) -> tuple[float, str]:
-        """Not known."""
-        return math.nan, ""
-
-    def diffusive_from(self) -> float:
-        """Not known: what is measured is taken as it is."""
-        return 0.0
-
     def grows(self) -> bool:
         """In 2D, where neither walls nor a bath take momentum."""
         case, bath = self.case, self.case.spheres.thermostat
         kept = not case.walls and (bath is None or bath.decay(self.timestep) == 1.0)
         return case.box.dimension == 2 and kept and self.number > 1
-
-    def level_from(self) -> float:
-        """Never: nothing holds them."""
-        return math.inf
-
-    def legend(self) -> str:
-        """There is no theory to name."""
-        return ""
 
 
 class SoftCooling:
