@@ -14,8 +14,6 @@ from mesokit.method.mpcd.expected.molecules import (
     crowd_note,
     free_diffusion,
     friction_of,
-    group_of,
-    kind_of,
     kirkwood,
     modes_of,
     rouse_note,
@@ -24,6 +22,7 @@ from mesokit.method.mpcd.expected.molecules import (
     without_solutes,
 )
 from mesokit.method.mpcd.expected.traps import LEVEL, held, trapped
+from mesokit.method.mpcd.expected.whose import group_of, kind_of
 from mesokit.method.mpcd.molecule import FLUID
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import Group, free_diffusion, kind_of
-from mesokit.method.mpcd.expected.whose import default_of, groups_of, strangers
+from mesokit.method.mpcd.expected.molecules import free_diffusion
+from mesokit.method.mpcd.expected.whose import Group, default_of, groups_of, kind_of, strangers
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -11,14 +11,8 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    beads_of,
-    free_bond,
-    molecule_of,
-    shear_note,
-    times_in_shear,
-)
+from mesokit.method.mpcd.expected.molecules import free_bond, shear_note, times_in_shear
+from mesokit.method.mpcd.expected.whose import KIND, beads_of, molecule_of
 from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate

@@ -9,16 +9,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    bond_at_rest,
-    bonds_in_shear,
-    bonds_of,
-    group_of,
-    molecule_of,
-    of_fluid,
-    shear_note,
-)
+from mesokit.method.mpcd.expected.molecules import bond_at_rest, bonds_in_shear, shear_note
+from mesokit.method.mpcd.expected.whose import KIND, bonds_of, group_of, molecule_of, of_fluid
 from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.seam.engine import RunningFluid, Terms
 from mesokit.seam.observable import Observable, accumulator_of

@@ -15,15 +15,9 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, mean_shape, stretched, undisturbed
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    ends_at_rest,
-    free_bond,
-    group_of,
-    modes_at_rest,
-    molecule_of,
-)
+from mesokit.method.mpcd.expected.molecules import ends_at_rest, free_bond, modes_at_rest
 from mesokit.method.mpcd.expected.traps import held, trapped
+from mesokit.method.mpcd.expected.whose import KIND, group_of, molecule_of
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, State, accumulator_of

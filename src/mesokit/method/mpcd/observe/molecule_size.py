@@ -9,16 +9,8 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.ideal import mean_shape
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    beads_of,
-    ends_at_rest,
-    free_bond,
-    group_of,
-    gyration,
-    modes_at_rest,
-    molecule_of,
-)
+from mesokit.method.mpcd.expected.molecules import ends_at_rest, free_bond, gyration, modes_at_rest
+from mesokit.method.mpcd.expected.whose import KIND, beads_of, group_of, molecule_of
 from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of

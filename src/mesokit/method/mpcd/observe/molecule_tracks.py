@@ -10,7 +10,7 @@ import numpy as np
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.ideal import flow_axis, ideal_sizes, undisturbed
-from mesokit.method.mpcd.expected.molecules import KIND, group_of, molecule_of
+from mesokit.method.mpcd.expected.whose import KIND, group_of, molecule_of
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of

@@ -11,15 +11,8 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    beads_of,
-    mode_times_of,
-    modes_of,
-    molecule_of,
-    springs_of,
-    substep_of,
-)
+from mesokit.method.mpcd.expected.molecules import mode_times_of, modes_of, springs_of, substep_of
+from mesokit.method.mpcd.expected.whose import KIND, beads_of, molecule_of
 from mesokit.method.mpcd.observe.shared.decay import fit_curve, normalised
 from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
 from mesokit.method.mpcd.observe.transverse_modes import FEWEST, LOWEST, decaying

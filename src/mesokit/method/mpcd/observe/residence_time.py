@@ -16,7 +16,7 @@ from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import Solids, labels
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.ideal import drift_of
-from mesokit.method.mpcd.expected.molecules import KIND, group_of
+from mesokit.method.mpcd.expected.whose import KIND, group_of
 from mesokit.method.mpcd.observe.shared.durations import in_parts, ratio
 from mesokit.method.mpcd.observe.shared.events import EventAccumulator, Words
 from mesokit.observe.shared.origins import GROUPS

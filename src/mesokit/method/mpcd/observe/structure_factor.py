@@ -13,8 +13,15 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import KIND, Group, free_bond, kind_of
-from mesokit.method.mpcd.expected.whose import default_of, groups_of, strangers
+from mesokit.method.mpcd.expected.molecules import free_bond
+from mesokit.method.mpcd.expected.whose import (
+    KIND,
+    Group,
+    default_of,
+    groups_of,
+    kind_of,
+    strangers,
+)
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.seam.engine import RunningFluid

@@ -13,7 +13,7 @@ from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import drift_of, flow_axis, flow_sign
-from mesokit.method.mpcd.expected.molecules import KIND, group_of
+from mesokit.method.mpcd.expected.whose import KIND, group_of
 from mesokit.method.mpcd.observe.shared.durations import sum_error
 from mesokit.method.mpcd.observe.shared.events import (
     EventAccumulator,

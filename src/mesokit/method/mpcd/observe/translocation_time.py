@@ -12,7 +12,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, flow_sign
-from mesokit.method.mpcd.expected.molecules import KIND, molecule_of
+from mesokit.method.mpcd.expected.whose import KIND, molecule_of
 from mesokit.method.mpcd.observe.shared.events import (
     EventAccumulator,
     Words,

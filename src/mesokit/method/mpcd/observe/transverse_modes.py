@@ -13,11 +13,11 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     free_bond,
     modes_of,
-    molecule_of,
     rouse_note,
     rouse_times_of,
     without_bonds,
 )
+from mesokit.method.mpcd.expected.whose import molecule_of
 from mesokit.method.mpcd.molecule import FLUID
 from mesokit.method.mpcd.observe.shared.decay import fit_curve, largest_error, normalised
 from mesokit.method.mpcd.observe.shared.modes import (

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of, springs_of
+from mesokit.method.mpcd.expected.molecules import springs_of
 from mesokit.method.mpcd.expected.traps import held, trapped
+from mesokit.method.mpcd.expected.whose import Group, group_of, kind_of
 from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate

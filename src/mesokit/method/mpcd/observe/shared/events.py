@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import group_of
+from mesokit.method.mpcd.expected.whose import group_of
 from mesokit.method.mpcd.observe.shared.durations import Durations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, State, pack, unpack
