@@ -273,7 +273,7 @@ def test_hdf5_reads_back_what_the_disk_refused(tmp_path):
     program = """
 import resource, signal
 import numpy as np
-from mesokit.io.h5md import made
+from mesokit.io.hdf5 import made
 
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (5000, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
