@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.geometry.solids.contact import MARGIN
+from mesokit.method.mpcd.start.arrays import OfFirst, rows_of
 from mesokit.method.mpcd.start.conformation import connected, drawn, nearest_of
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.start.growth import grown
-from mesokit.method.mpcd.start.of_first import OfFirst, rows_of
 from mesokit.method.mpcd.start.room import periods, stays_out
 from mesokit.potential.protocol import Pair
 from mesokit.potential.thermal import energies
