@@ -4,8 +4,6 @@ The public names, a line for each in `__init__.pyi`, are imported when they are 
 `import mesokit` is instant.
 """
 
-from __future__ import annotations
-
 import importlib
 from typing import Any
 

@@ -46,7 +46,7 @@ from mesokit.geometry.shape_protocol import Shape as Shape
 from mesokit.geometry.shape_protocol import Simple as Simple
 from mesokit.geometry.solids.solids import Solids as Solids
 from mesokit.geometry.surface import Surface as Surface
-from mesokit.geometry.surface_contact import SurfaceContact as SurfaceContact
+from mesokit.geometry.surface import SurfaceContact as SurfaceContact
 from mesokit.method.flock.cohesion import Cohesion as Cohesion
 from mesokit.method.flock.noise.angular import AngularNoise as AngularNoise
 from mesokit.method.flock.noise.protocol import Noise as Noise
@@ -75,6 +75,7 @@ from mesokit.method.mpcd.field.scheduled import ScheduledForce as ScheduledForce
 from mesokit.method.mpcd.field.sinusoidal import Sinusoidal as Sinusoidal
 from mesokit.method.mpcd.field.uniform import Uniform as Uniform
 from mesokit.method.mpcd.fluid import Fluid as Fluid
+from mesokit.method.mpcd.fluid import Species as Species
 from mesokit.method.mpcd.molecule import Molecule as Molecule
 from mesokit.method.mpcd.numbers import Derived as Derived
 from mesokit.method.mpcd.observe.bond_correlation import BondCorrelation as BondCorrelation
@@ -111,13 +112,12 @@ from mesokit.method.mpcd.observe.wake import Wake as Wake
 from mesokit.method.mpcd.observe.wall_stress import WallStress as WallStress
 from mesokit.method.mpcd.si import SI as SI
 from mesokit.method.mpcd.si import convert as convert
-from mesokit.method.mpcd.solute.magnetic import MagneticField as MagneticField
+from mesokit.method.mpcd.solute.external import MagneticField as MagneticField
+from mesokit.method.mpcd.solute.external import Pull as Pull
+from mesokit.method.mpcd.solute.external import Trap as Trap
 from mesokit.method.mpcd.solute.polymer import Between as Between
 from mesokit.method.mpcd.solute.polymer import Polymer as Polymer
-from mesokit.method.mpcd.solute.pull import Pull as Pull
-from mesokit.method.mpcd.solute.trap import Trap as Trap
 from mesokit.method.mpcd.solutes import Solutes as Solutes
-from mesokit.method.mpcd.species import Species as Species
 from mesokit.method.mpcd.start.section import Start as Start
 from mesokit.method.mpcd.thermostat.maxwell_boltzmann import MaxwellBoltzmann as MaxwellBoltzmann
 from mesokit.method.mpcd.thermostat.none import NoThermostat as NoThermostat

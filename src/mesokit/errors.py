@@ -1,7 +1,5 @@
 """The errors that users see. The text of each is one line that says what to change."""
 
-from __future__ import annotations
-
 
 class MesokitError(Exception):
     """Any error that mesokit raises on purpose; `str(error)` is one line for the user."""

@@ -1,7 +1,5 @@
 """The names of a package, from the stub that stands beside its `__init__.py`."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

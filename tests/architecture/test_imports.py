@@ -50,7 +50,7 @@ ROWS = {
     "case/": ("case", "errors", "scalar", "theory"),
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
-    "seam/": ("case", "errors", "processes.cores", "seam", "statistics"),
+    "seam/": ("case", "errors", "geometry.solids", "processes.cores", "seam", "statistics"),
     "loops/": ("loops", "scalar"),
     "processes/": ("errors", "processes"),
     "processes/cores.py": (),

@@ -15,7 +15,7 @@ HOMES = {
     "kernels/store.py": {"/proc", "os.getuid"},
     "scalar/system.py": {"time.CLOCK_MONOTONIC", "ctypes", "ExternalFunction"},
     "method/mpcd/engine/domains/messages/mpi.py": {"ctypes", "ExternalFunction"},
-    "io/run_directory.py": {"/proc"},
+    "io/provenance.py": {"/proc"},
 }
 MODULES = {"fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "posix", "syslog", "ctypes"}
 OF_OS = {

@@ -24,14 +24,12 @@ from mesokit import (
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.displacement import Displacement
 from mesokit.method.mpcd.expected.molecules import (
-    bonds_of,
     free_bond,
-    group_of,
-    kind_of,
     least_times_of,
     mode_times_of,
     springs_of,
 )
+from mesokit.method.mpcd.expected.selection import bonds_of, group_of, kind_of
 from mesokit.method.mpcd.groups import bonded_pairs
 from mesokit.method.mpcd.method import METHOD
 from mesokit.method.mpcd.solute.polymer import Between

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from mesokit.io.sources import sources
+from mesokit.io.provenance import sources
 
 pytest.importorskip("hatchling")
 pytestmark = pytest.mark.long
@@ -52,7 +52,7 @@ def test_a_wheel_works_by_itself(built: Path, tmp_path: Path) -> None:
     assert "mesokit/theory/__init__.pyi" in there
     assert not [name for name in there if "__pycache__" in name or name.startswith("tests")]
     code = (
-        "import mesokit; from mesokit.io.sources import sources\n"
+        "import mesokit; from mesokit.io.provenance import sources\n"
         "print(mesokit.__file__); print(sources()['digest']); print(sources()['commit'])"
     )
     place = {"PYTHONPATH": str(built / "wheel") + os.pathsep + os.environ.get("PYTHONPATH", "")}

@@ -13,7 +13,7 @@ from mesokit import AT, SRD, MaxwellBoltzmann, NoForce, NoThermostat, Plates, Su
 from mesokit.errors import CaseError
 from mesokit.method.mpcd import collision, field, thermostat
 from mesokit.method.mpcd.engine.cpu.engine import CPU
-from mesokit.method.mpcd.species import Species
+from mesokit.method.mpcd.fluid import Species
 from mesokit.method.mpcd.start.fluid import start
 
 pytestmark = pytest.mark.long

@@ -9,8 +9,8 @@ import numpy as np
 from mesokit import Disk, Harmonic, Plates, Sphere, Uniform
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.fluid import Species
 from mesokit.method.mpcd.molecule import Molecule
-from mesokit.method.mpcd.species import Species
 from mesokit.statistics import Tally
 from tests.helpers.whole_fluid import AtOnce
 

@@ -28,7 +28,7 @@ from mesokit.geometry.solids import contact, filled  # noqa: F401  what solids i
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
 from mesokit.geometry.solids.none import Nothing
-from mesokit.method.flock.engine.walls import flown
+from mesokit.method.flock.engine.move import flown
 from mesokit.method.flock.noise import RULES as NOISES
 from mesokit.method.flock.noise import protocol as birds
 from mesokit.method.mpcd import collision, thermostat

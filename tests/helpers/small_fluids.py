@@ -16,8 +16,7 @@ from mesokit.case.run import Run
 from mesokit.method.mpcd import collision
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.field.uniform import Uniform
-from mesokit.method.mpcd.fluid import Fluid
-from mesokit.method.mpcd.species import Species
+from mesokit.method.mpcd.fluid import Fluid, Species
 from mesokit.method.mpcd.start.fluid import start
 
 COLLIDING = [rule for rule in collision.RULES if rule.acts]

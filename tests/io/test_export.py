@@ -22,10 +22,9 @@ from mesokit.case.trajectory import Trajectory, names_and_diameters
 from mesokit.cli import main
 from mesokit.errors import CaseError, RunError
 from mesokit.io import h5md
-from mesokit.method.mpcd.fluid import Fluid
+from mesokit.method.mpcd.fluid import Fluid, Species
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
-from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.start.section import Start
 from mesokit.run.simulation import Simulation
 

@@ -15,7 +15,8 @@ from mesokit import Conservation, Plates, Stress, TransverseModes, VelocityField
 from mesokit.case.trajectory import Trajectory
 from mesokit.errors import RunError
 from mesokit.io import h5md
-from mesokit.io.run_directory import RunDirectory, provenance
+from mesokit.io.provenance import provenance
+from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
 from tests.helpers.fake_fluid import FakeFluid
 
@@ -272,7 +273,7 @@ def test_hdf5_reads_back_what_the_disk_refused(tmp_path):
     program = """
 import resource, signal
 import numpy as np
-from mesokit.io.h5md import made
+from mesokit.io.hdf5 import made
 
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (5000, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from mesokit import Box, Case, Fluid, Run, Simulation
-from mesokit.io import sources as module
+from mesokit.io import provenance as module
 from mesokit.method.mpcd.start.section import Start
 
 CASE = Case(run=Run(steps=3), box=Box([8, 8]), fluid=Fluid())

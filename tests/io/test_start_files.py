@@ -18,8 +18,8 @@ from mesokit.method.brownian.method import first_state as walkers_at
 from mesokit.method.brownian.section import Brownian
 from mesokit.method.flock.section import Flock, FlockStart
 from mesokit.method.flock.start import first_state as birds_at
+from mesokit.method.mpcd.fluid import Species
 from mesokit.method.mpcd.molecule import Molecule
-from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.start.first_state import first_state
 from mesokit.method.mpcd.start.section import Start
 from tests.helpers.small_fluids import make_case, make_fluid

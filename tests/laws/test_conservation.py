@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesokit.method.mpcd.collision import RULES
-from mesokit.method.mpcd.species import Species
+from mesokit.method.mpcd.fluid import Species
 from tests.helpers.small_fluids import cells, conserved_sums, make_fluid
 
 EVERYTHING = ("mass", "momentum", "energy", "angular momentum")

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from mesokit import theory
-from mesokit.method.mpcd.species import Species
+from mesokit.method.mpcd.fluid import Species
 from tests.helpers.small_fluids import COLLIDING, Measured, cells, make_fluid, mean
 
 UNLIKELY = 1e-3  # a p-value below this would happen by chance once in a thousand seeds

@@ -25,8 +25,8 @@ from mesokit import (
     theory,
 )
 from mesokit.errors import RunError
+from mesokit.method.mpcd.fluid import Species
 from mesokit.method.mpcd.solutes import Polymer, Solutes
-from mesokit.method.mpcd.species import Species
 from tests.helpers.small_fluids import make_fluid, mean
 
 pytestmark = pytest.mark.long

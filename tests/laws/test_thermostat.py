@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from mesokit import MaxwellBoltzmann, NoThermostat, Plates, Uniform, theory
-from mesokit.method.mpcd.species import Species
+from mesokit.method.mpcd.fluid import Species
 from mesokit.method.mpcd.thermostat import RULES
 from tests.helpers.small_fluids import Measured, conserved_sums, make_fluid, relative_energy
 

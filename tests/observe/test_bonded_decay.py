@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesokit import theory
-from mesokit.method.mpcd.observe.shared.bonded_decay import BondedLaw, fit_bonded
+from mesokit.method.mpcd.observe.transverse_modes import BondedLaw, fit_bonded
 from mesokit.seam.estimate import Estimate
 
 LAW = BondedLaw(

@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 from mesokit import AT
+from mesokit.method.mpcd.fluid import Species
 from mesokit.method.mpcd.observe import OBSERVABLES as OF_MPCD
-from mesokit.method.mpcd.species import Species
 from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES
 from mesokit.method.spheres.hard.observe import OBSERVABLES as OF_HARD_SPHERES
 from mesokit.method.spheres.soft.observe import OBSERVABLES as OF_SOFT_SPHERES
 from mesokit.observe import OBSERVABLES as OF_SEVERAL
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import with_error
+from mesokit.statistics import Blocks
 from tests.helpers.fake_fluid import FakeFluid, case_for, taken
 
 # those of spheres have their own tests: no fluid can answer them
@@ -78,6 +80,36 @@ def test_other_fluids(kind, fluid, make_case):
 def test_it_says_what_it_is(kind):
     assert kind.__doc__ and kind().label == kind().quantity
     assert kind(name="a").label == "a"
+
+
+def test_one_without_an_accumulator_is_refused():
+    class Bare(Observable):
+        pass
+
+    with pytest.raises(TypeError, match="accumulator"):
+        Bare()
+
+
+class Memory(BlockAccumulator):
+    memory = ("blocks", "own", "count", "last")
+    added = ("count", "runs")
+
+    def __init__(self, sample, own=None):
+        self.blocks, self.own, self.count, self.runs = Blocks(), own, 1, [sample]
+        self.last = np.full(2, sample)
+        self.blocks.add(sample)
+
+
+def test_memory_is_kept_and_pooled_by_the_names_of_its_parts():
+    one, other = Memory(1.0), Memory(4.0, Blocks())
+    assert set(one.state()) == {"blocks/sums", "blocks/counts", "count", "last"}
+    assert {"own/sums", "own/counts"} < set(other.state())
+    one.pool(other)
+    assert (one.blocks.mean(), one.count, one.runs) == (2.5, 2, [1.0, 4.0])
+    assert one.last.tolist() == [1.0, 1.0]  # of this run alone
+    again = Memory(0.0)
+    again.restore(one.state())
+    assert (again.count, again.last.tolist(), type(again.count)) == (2, [1.0, 1.0], int)
 
 
 def test_values_are_printed_like_in_a_journal():

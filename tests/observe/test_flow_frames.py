@@ -8,7 +8,7 @@ import pytest
 from mesokit import DensityField, FlowFrames, VelocityField
 from mesokit.errors import CaseError
 from mesokit.io import h5md
-from mesokit.method.mpcd.species import Species
+from mesokit.method.mpcd.fluid import Species
 from mesokit.observe.flow_frames import average
 from tests.helpers.fake_fluid import FakeFluid
 

@@ -17,7 +17,8 @@ from mesokit import (
     VelocityProfile,
 )
 from mesokit.io import h5md
-from mesokit.io.run_directory import RunDirectory, provenance
+from mesokit.io.provenance import provenance
+from mesokit.io.run_directory import RunDirectory
 from tests.helpers.fake_fluid import FakeFluid
 
 FLUID = Fluid(density=5, force=Uniform([0.01, 0.0]), thermostat=MaxwellBoltzmann())

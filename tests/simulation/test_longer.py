@@ -8,7 +8,7 @@ import pytest
 
 import mesokit
 from mesokit.errors import CaseError
-from mesokit.io import h5md
+from mesokit.io import h5md, hdf5
 from mesokit.run.simulation import Simulation
 
 
@@ -122,7 +122,7 @@ def test_record_follows(tmp_path):
     bulk.run()
     short = mesokit.open(tmp_path / "run").provenance
     Simulation.resume(tmp_path / "run", threads=2, steps=40).run()
-    with h5md.opened(tmp_path / "run" / "run.h5") as file:
+    with hdf5.opened(tmp_path / "run" / "run.h5") as file:
         duration = file["parameters/units"].attrs["duration"]
         record = json.loads(file["parameters/provenance"][()])
     assert duration == record["units"]["duration"]

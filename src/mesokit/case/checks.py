@@ -1,7 +1,5 @@
 """What every method checks of a case: observables, and the trajectory."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import re

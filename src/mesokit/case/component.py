@@ -6,8 +6,6 @@ booleans; a whole float passes as an int), lists and arrays become tuples, union
 are told apart by their tag (such as `rule` or `quantity`), unknown keys are refused.
 """
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import difflib

@@ -1,7 +1,5 @@
 """Which numbers a run tells in time."""
 
-from __future__ import annotations
-
 from mesokit.case.component import component, param
 
 

@@ -4,8 +4,6 @@ A package brings a method by an entry point of the group `mesokit.methods`, whos
 `run.method` says and whose value is the module that holds its `METHOD`.
 """
 
-from __future__ import annotations
-
 import importlib
 import pathlib
 from collections.abc import Iterable

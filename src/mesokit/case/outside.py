@@ -1,7 +1,5 @@
 """Parts of a case that mesokit does not bring: which they are, and whether they are here."""
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import importlib

@@ -1,7 +1,5 @@
 """How long a run is, and how often it is made safe."""
 
-from __future__ import annotations
-
 from pydantic import field_validator
 
 from mesokit.case import methods

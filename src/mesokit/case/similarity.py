@@ -1,7 +1,5 @@
 """Dimensionless numbers: how far two fluids, in any units, flow alike."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

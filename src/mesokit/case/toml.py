@@ -1,7 +1,5 @@
 """TOML of a case: read with messages that name the place, written with every default."""
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import difflib

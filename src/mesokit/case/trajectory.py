@@ -1,7 +1,5 @@
 """Which particles of a case are written, and how often."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 

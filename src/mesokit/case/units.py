@@ -1,7 +1,5 @@
 """The real fluid that a case stands for, and what of it the units are made to match."""
 
-from __future__ import annotations
-
 import math
 from typing import ClassVar, Literal
 

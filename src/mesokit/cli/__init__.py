@@ -3,8 +3,6 @@
 What takes time to import is imported inside functions, so that Ctrl-C is understood at once.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

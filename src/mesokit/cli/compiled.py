@@ -1,7 +1,5 @@
 """Commands on compiled code: warm, cache."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What the shell offers when TAB is pressed: pictures, templates, and keys of the case."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any

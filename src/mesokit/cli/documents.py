@@ -1,7 +1,5 @@
 """Commands that write what people read and other programs take: report, table."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import click

@@ -1,7 +1,5 @@
 """How every command ends: at most one line on standard error, and a status."""
 
-from __future__ import annotations
-
 import sys
 import traceback
 from collections.abc import Sequence

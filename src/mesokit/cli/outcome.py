@@ -1,7 +1,5 @@
 """What a run or a study says when it is stopped, fails or has come to its end."""
 
-from __future__ import annotations
-
 import contextlib
 import warnings
 from collections.abc import Iterator

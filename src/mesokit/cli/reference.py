@@ -1,7 +1,5 @@
 """Commands that say what a case file may say: new, schema, explain."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Commands on runs: run, resume, info, export."""
 
-from __future__ import annotations
-
 import contextlib
 import shutil
 from pathlib import Path

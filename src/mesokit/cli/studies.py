@@ -1,7 +1,5 @@
 """Commands on several runs of a case: study, merge."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path

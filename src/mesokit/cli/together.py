@@ -1,7 +1,5 @@
 """Commands on several ranks: who takes part, and how they are started on this machine."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import os

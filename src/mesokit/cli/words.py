@@ -1,7 +1,5 @@
 """Numbers, tables and reasons in words."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import itertools

@@ -7,16 +7,46 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
+import numpy as np
+
 from mesokit.case.box import Axis
 from mesokit.case.component import component, option
 from mesokit.case.registry import family
 from mesokit.errors import CaseError
-from mesokit.geometry.region import Region, Term, complement, images
-from mesokit.geometry.solids.reach import reaches
+from mesokit.geometry import primitive
+from mesokit.geometry.region import Region, Room, Term, complement, images
+from mesokit.geometry.solids.bodies import REACH
 from mesokit.geometry.surface import Surface
+from mesokit.scalar.intrinsics import with_item
+from mesokit.scalar.jit import seldom
+from mesokit.scalar.pointer import address
 
 if TYPE_CHECKING:
     from mesokit.geometry.region import Room
+
+
+def reaches(term: Term, room: Room) -> bool:
+    """Whether a term is on the list of what is near any cell of the box."""
+    clear = np.full(math.prod(room.size), -np.inf)
+    size, nothing = tuple(float(length) for length in room.size), np.zeros(1)
+    for part in term:
+        numbers = np.array(part.numbers)
+        samples = nothing if part.samples is None else part.samples
+        farthest_out(part.code, part.sign, address(numbers), address(samples), size, clear)
+    return bool(clear.min() <= 0.5 * math.sqrt(room.dimension) + REACH)
+
+
+@seldom
+def farthest_out(kind, sign, numbers, samples, size, clear):
+    """Raise the clearance of the middle of each cell to that from a part."""
+    for cell in range(len(clear)):
+        r, rest = size, cell
+        for k in range(len(size)):
+            length = int(size[k])
+            r = with_item(r, k, rest % length + 0.5)
+            rest //= length
+        clear[cell] = max(clear[cell], sign * primitive.distance(kind, numbers, samples, r))
+
 
 Virtual = Literal["extrapolate", "fill", "top-up", "none"]
 VIRTUAL = (
@@ -131,7 +161,6 @@ class Shape(Wall):
         return {"surface": self.surface}
 
     def bodies(self, room: Room, label: str) -> list[Body]:
-        """What it is made of: a body for each surface, named after it or `label`."""
         name = self.name or label
         return [Body(name, self.surface, self.virtual, self.pieces(room), self.turning(room))]
 

@@ -1,14 +1,41 @@
 """What a wall does to the particles that hit it."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 from pydantic import field_validator
 
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Either
-from mesokit.geometry.surface_contact import SurfaceContact
+
+
+@component
+class SurfaceContact:
+    """Restitution, friction, temperature and vibration of a surface that spheres touch.
+
+    What is not said is as between two spheres.
+    """
+
+    restitution: float | None = param(
+        None, doc="normal velocity after over before a collision", ge=0, le=1
+    )
+    tangential: float | None = param(
+        None,
+        doc="tangential velocity of the contact after a collision over minus that before: -1 "
+        "smooth, 1 perfectly rough",
+        ge=-1,
+        le=1,
+    )
+    friction: float | None = param(
+        None, doc="coefficient of friction: largest tangential over normal force", ge=0, le=1e6
+    )
+    temperature: float | None = param(
+        None, doc="thermal energy of a wall that sends them out at random", unit="kT", gt=0, le=1e9
+    )
+    amplitude: float = param(0.0, doc="it vibrates so far along its normal", unit="a", ge=0)
+    frequency: float = param(
+        0.0, doc="of the vibration, in radians per time", unit="1/time", ge=0, le=1e9
+    )
+
 
 FASTEST = 1e6  # a surface's speed and rate of rotation: beyond it is a slip of the pen
 

@@ -10,8 +10,7 @@ from mesokit.geometry import shape_protocol
 from mesokit.geometry.shape.intersection import Intersection
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import Solids, labels, solids_of
-from mesokit.geometry.surface import Surface
-from mesokit.geometry.surface_contact import SurfaceContact
+from mesokit.geometry.surface import Surface, SurfaceContact
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -4,8 +4,6 @@ They are as `numpy.savez` makes them. An array that comes in pieces has a shape,
 `blocks()`, which yields its rows in order.
 """
 
-from __future__ import annotations
-
 import math
 import zipfile
 from collections.abc import Iterator, Mapping

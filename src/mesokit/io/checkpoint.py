@@ -1,7 +1,5 @@
 """Checkpoints: one file that is always whole, and refuses to continue another case."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

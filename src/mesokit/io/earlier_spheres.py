@@ -1,7 +1,5 @@
 """Spheres as an earlier run has left them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -22,10 +22,8 @@ the images have slid: that of the nearest image, between -L/2 and L/2.
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,8 +33,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import name_of
 from mesokit.case.trajectory import kinds_of, names_and_diameters
-from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
+from mesokit.io.hdf5 import made, opened
 from mesokit.seam.in_units import units_of
 from mesokit.seam.method import method_of
 from mesokit.seam.result import Comparison, Result
@@ -49,7 +47,6 @@ UNITS = {"position": "a", "velocity": "a/tau", "spin": "1/tau", "time": "tau", "
 FIELDS = ("position", "velocity", "spin", "image", "site")
 DTYPES = {"image": np.int32, "site": np.int16}  # of the others by the precision of the trajectory
 CHUNK = 65536  # particles
-MOST_IN_MEMORY = 2**28  # bytes kept in memory once the disk is full
 LARGE = 2**20  # numbers of one result, beyond which it is compressed
 _TABLE = ("what", "measured", "error", "expected", "unit", "note", "inverse")
 
@@ -138,105 +135,6 @@ def columns(field: str, dimension: int) -> Any:
 def particles_of(file: Any) -> Any:
     """The group of the particles in a data file, None without a trajectory."""
     return next(iter(file["particles"].values())) if "particles" in file else None
-
-
-class _Target(io.FileIO):
-    """A file that HDF5 can always write to, read from and close: else it may end the process.
-
-    From the first write that the system refuses on, as on a full disk, writes are kept in memory,
-    where HDF5 reads them back; `refused` is the reason.
-    """
-
-    def __init__(self, path: str | Path) -> None:
-        super().__init__(path, "w+")
-        self.refused: OSError | None = None
-        self._kept: list[tuple[int, bytes]] = []  # offsets and what was written there
-        self._end = 0  # of the last byte in memory
-
-    def check(self) -> None:
-        """Raise OSError once the system has refused a write."""
-        if self.refused is not None:
-            raise self.refused
-
-    def write(self, data: Any) -> int:
-        """Write all of it, to the file or to memory."""
-        whole = memoryview(data).cast("B")
-        start, left = self.tell(), whole
-        try:
-            while len(left) and self.refused is None:
-                left = left[super().write(left) :]
-        except OSError as error:
-            self.refused = error
-        if self.refused is not None:
-            self._keep(start, bytes(whole))
-        return whole.nbytes
-
-    def _keep(self, start: int, data: bytes) -> None:
-        if sum(len(one) for _, one in self._kept) < MOST_IN_MEMORY:
-            self._kept.append((start, data))
-        self._end = max(self._end, start + len(data))
-        self.seek(start + len(data))
-
-    def readinto(self, buffer: Any) -> int:
-        """Fill a buffer from the file, and from what is in memory instead."""
-        if self.refused is None:
-            return super().readinto(buffer) or 0
-        out, start = memoryview(buffer).cast("B"), self.tell()
-        out[:] = bytes(out.nbytes)
-        super().readinto(out)
-        for at, data in self._kept:
-            first, last = max(at, start), min(at + len(data), start + out.nbytes)
-            if first < last:
-                out[first - start : last - start] = data[first - at : last - at]
-        self.seek(start + out.nbytes)
-        return out.nbytes
-
-    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        """Go to a place, which may lie in memory."""
-        if whence == io.SEEK_END:
-            return super().seek(max(super().seek(0, io.SEEK_END), self._end) + offset)
-        return super().seek(offset, whence)
-
-    def truncate(self, size: int | None = None) -> int:
-        """Make it longer or shorter, if that can be done."""
-        try:
-            return super().truncate(size)
-        except OSError as error:
-            self.refused = self.refused or error
-            return size or 0
-
-    def flush(self) -> None:
-        """Nothing waits to be written."""
-
-
-@contextmanager
-def made(path: str | Path) -> Iterator[tuple[Any, Callable[[], None]]]:
-    """A new HDF5 file, for writing, and a function that raises OSError once a write was refused.
-
-    Raises OSError at the end, such as for a full disk.
-    """
-    with _Target(path) as target:
-        try:
-            with h5py.File(target, "w") as file:
-                yield file, target.check
-        except (OSError, RuntimeError):  # what HDF5 makes of it
-            if target.refused is None:
-                raise
-        target.check()
-
-
-@contextmanager
-def opened(path: str | Path) -> Iterator[Any]:
-    """The HDF5 file, for reading. Raises RunError if it is damaged, also while it is read."""
-    try:
-        with h5py.File(path, "r") as file:
-            yield file
-    except FileNotFoundError:
-        raise RunError(f"{path}: no such file") from None
-    except (OSError, LookupError, ValueError, TypeError, AttributeError, RuntimeError) as error:
-        if getattr(error, "errno", None):  # not the file but the system, such as a full disk
-            raise
-        raise RunError(f"{path}: damaged: it is not a whole HDF5 file") from None
 
 
 def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-from mesokit.io.h5md import made
+from mesokit.io.hdf5 import made
 
 if TYPE_CHECKING:
     from mesokit.io.moments import Moment, Particles

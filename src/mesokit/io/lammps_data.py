@@ -1,7 +1,5 @@
 """Data files of LAMMPS: header, sections, and the columns of common atom styles."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

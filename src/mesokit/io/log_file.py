@@ -4,8 +4,6 @@ Each line is in the file as soon as it is known. A run that goes on from a check
 lines that came after it, so that the file is that of a run which never stopped.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import itertools

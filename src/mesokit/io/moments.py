@@ -1,7 +1,5 @@
 """What a file for other programs holds: particles, and one frame of them."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Packages that only some files need."""
 
-from __future__ import annotations
-
 import importlib
 import warnings
 from types import ModuleType

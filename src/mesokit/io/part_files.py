@@ -1,14 +1,22 @@
-"""Files from which parts were made, such as a force, kept in the folder of a run."""
+"""Files from which parts and solids were made, kept in the folder of a run."""
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from mesokit.case.component import FromContents
+from mesokit.geometry.samples.from_file import FromFile
+from mesokit.geometry.shape.sampled import Sampled
 from mesokit.io.atomic import replacing
 from mesokit.io.run_directory import RunDirectory
+
+if TYPE_CHECKING:
+    from mesokit.geometry.solids.solids import Solids
 
 
 def kept_row(parts: tuple[Any, ...], key: str, name: str, folder: Path) -> tuple[Any, ...]:
@@ -46,3 +54,28 @@ def _kept(whole: Any, key: str, name: str, folder: Path) -> Any:
         temporary.write_bytes(part.contents)
     part = dataclasses.replace(part, file=str(file))  # type: ignore[type-var]
     return dataclasses.replace(whole, **{key: part})
+
+
+def kept(walls: Sequence[Any], solids: Solids, folder: Path) -> tuple[Any, ...]:
+    """The walls with the distances that their files gave, which are written into the folder now.
+
+    So a run goes on with the same solids, and can be moved, whatever becomes of the files. Raises
+    RunError.
+    """
+    found = list(walls)
+    for i, wall in enumerate(walls):
+        if not isinstance(wall, FromFile):
+            continue
+        file = RunDirectory(folder).wall_file(i + 1)
+        grid = wall.distances(solids.room)
+        with replacing(file) as temporary, temporary.open("wb") as stream:
+            np.save(stream, grid.values)
+        found[i] = Sampled(
+            file=str(file),
+            spacing=grid.spacing,
+            origin=grid.origin,
+            centre=wall.pivot(solids.room),
+            name=solids.bodies[solids.walls.index(i)].name,
+            **wall.kept(),
+        )
+    return tuple(found)

@@ -1,7 +1,5 @@
 """What the record of a folder of merged runs says of them."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Mapping
 from pathlib import Path

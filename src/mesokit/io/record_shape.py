@@ -1,7 +1,5 @@
 """What the record of a run holds, and whether one that was read does."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """How several ranks have shared the work of a run, in numbers and in words."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 from typing import Any

@@ -1,7 +1,5 @@
 """Particles that another program has written: which reader a file takes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,14 +1,12 @@
 """The frames of a run that has ended."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.io import h5md
+from mesokit.io import h5md, hdf5
 
 
 class TrajectoryReader:
@@ -20,7 +18,7 @@ class TrajectoryReader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        with h5md.opened(path) as file:
+        with hdf5.opened(path) as file:
             group = h5md.particles_of(file)
             self.fields: tuple[str, ...] = ()
             self.dimension = 0
@@ -56,7 +54,7 @@ class TrajectoryReader:
         """
         if field not in self.fields:
             raise KeyError(f"no field {field!r}; there are {', '.join(self.fields)}")
-        with h5md.opened(self.path) as file:
+        with hdf5.opened(self.path) as file:
             data = h5md.particles_of(file)[f"{field}/value"]
             return h5md.in_frames(data, frames, field, self.dimension)
 

@@ -5,8 +5,6 @@ needs a system that copies processes, a core that is free, a store that can be w
 other thread of the user is at work; elsewhere, and among ranks, the first call compiles the kernel.
 """
 
-from __future__ import annotations
-
 import atexit
 import contextlib
 import os

@@ -7,8 +7,6 @@ as long as the packed group. Loads are marked as of memory that does not change,
 them out of loops, but for the fields that a class declares as changing.
 """
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import struct

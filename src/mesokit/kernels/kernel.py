@@ -4,14 +4,16 @@ A kernel is a function that calls one part, so that its own code is found in the
 other. Machine code of kernels is kept too, for one processor: a second start compiles nothing.
 """
 
-from __future__ import annotations
-
+import contextlib
 import gc
+import hashlib
 import inspect
 import pickle
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+from filelock import BaseFileLock, FileLock
 from numba import njit, typeof
 from numba.core.registry import CPUDispatcher, cpu_target
 
@@ -20,9 +22,35 @@ from mesokit.kernels.group import all_packed
 from mesokit.kernels.kept import counts, kept, versions
 from mesokit.kernels.library import machine_code, make_ready, needs_below, processor, stages_of
 from mesokit.kernels.made_of import Unknown, code_of, describe_type, digest
-from mesokit.kernels.one_compiles import released, taken
 from mesokit.kernels.part import as_bytes, part, result_of
 from mesokit.kernels.store import Code, Entry
+
+PATIENCE = 300.0  # seconds: a process that was stopped holds no other up for ever
+
+
+def taken(folder: str, name: str) -> BaseFileLock | None:
+    """The lock of what has this name, once no other process has it.
+
+    None where the file system knows no locks, and after too long a wait: then all compile. The
+    system takes the lock from a process that ends.
+    """
+    place = Path(folder) / "locks" / hashlib.sha256(name.encode()).hexdigest()[:32]
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        lock = FileLock(place, timeout=PATIENCE)
+        lock.acquire(poll_interval=0.02)
+    except (OSError, NotImplementedError):  # Timeout is an OSError
+        return None
+    return lock
+
+
+def released(lock: BaseFileLock | None) -> None:
+    """Let other processes go on."""
+    if lock is not None:
+        lock.release()
+        with contextlib.suppress(OSError):  # a process that waits has it open
+            Path(lock.lock_file).unlink()
+
 
 _used: set[str] | None = set()  # lines of all kernels of this process
 _words: dict[tuple[str, ...], str] = {}  # the hash in such a line, by the rest of it

@@ -1,7 +1,5 @@
 """What numba makes of functions, made when it is first used: to read a case takes no compiler."""
 
-from __future__ import annotations
-
 import functools
 import sys
 import threading

@@ -4,8 +4,6 @@ The code of a part is bitcode, which lies in the store by its hash, with the has
 calls. A stage has machine code as well, by the same hash and the processor.
 """
 
-from __future__ import annotations
-
 import pickle
 import weakref
 from collections.abc import Iterable

@@ -6,8 +6,6 @@ it. Code is valid while all its needs are as they were, so that an edit of one f
 contains it and nothing else.
 """
 
-from __future__ import annotations
-
 import dis
 import functools
 import hashlib

@@ -10,8 +10,6 @@ A stage is a part that is not put together with what calls it: it has machine co
 and kept once for all kernels that call it, which find it by its name.
 """
 
-from __future__ import annotations
-
 import itertools
 import os
 import pickle

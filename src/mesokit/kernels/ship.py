@@ -1,7 +1,5 @@
 """A file of parts that comes with the package, for a first run without compiling most of it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from mesokit.kernels.kept import kept, version_line

@@ -9,8 +9,6 @@ or read-only costs time, never a run.
 Packages may bring a second file, which is only read.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import itertools

@@ -1,7 +1,5 @@
 """Cells and lists of neighbours: what all methods that look for pairs share."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.scalar.intrinsics import floor

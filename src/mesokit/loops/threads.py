@@ -1,7 +1,5 @@
 """Threads that run one kernel together, and the gate at which they wait for one another."""
 
-from __future__ import annotations
-
 import threading
 from queue import SimpleQueue
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """What particles of more than one method have: observables, a file each."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.seam.observable import Accumulator, Observable
 from mesokit.seam.result import Comparison, Result

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +11,12 @@ from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import Array, Compared, Profile, ProfileAccumulator
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import method_of
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 
 class DensityInSlices(Protocol):
@@ -29,7 +31,7 @@ class DensityInSlices(Protocol):
     label: str
     ids: NDArray[np.int64] | None
 
-    def sums(self, profile: ProfileAccumulator, engine: Any) -> Array:
+    def sums(self, profile: ProfileAccumulator, engine: RunningFluid | RunningSpheres) -> Array:
         """Those numbers (width, bins) at this moment."""
 
     def compared(self, profile: ProfileAccumulator, density: Estimate, sums: Array) -> Compared:
@@ -69,11 +71,8 @@ class DensityProfile(Profile):
         super().check(case)
         self.theory(case)
 
-    def accumulator(self, case: Case) -> DensityProfileAccumulator:
-        """An empty memory for it."""
-        return DensityProfileAccumulator(self, case)
 
-
+@accumulator_of(DensityProfile)
 class DensityProfileAccumulator(ProfileAccumulator):
     """Sums of each slice, per volume."""
 
@@ -83,7 +82,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
         self.ids = self.theory.ids
         self.unit, self.slice_volume = case.box.density_unit, case.box.volume / self.bins
 
-    def sums(self, engine: Any) -> Array:
+    def sums(self, engine: RunningFluid | RunningSpheres) -> Array:
         """What the method counts."""
         return self.theory.sums(self, engine) / self.slice_volume
 

@@ -15,7 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.observe.shared.field import Array, Field
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import of_ratio
-from mesokit.seam.observable import State
+from mesokit.seam.observable import State, accumulator_of
 from mesokit.seam.result import Result
 from mesokit.statistics import spread_ids
 
@@ -79,10 +79,6 @@ class FlowFrames(Field):
                 "one frame, of a window cut short"
             )
 
-    def accumulator(self, case: Case) -> FlowFramesAccumulator:
-        """An empty memory for it."""
-        return FlowFramesAccumulator(self, case)
-
 
 def _parts(case: Case) -> list[str]:
     """What is kept of each bin. Velocities are weighted by mass, which a mixture has apart."""
@@ -91,11 +87,11 @@ def _parts(case: Case) -> list[str]:
     return ["density", *["mass_density"] * mixture, *velocities]
 
 
+@accumulator_of(FlowFrames)
 class FlowFramesAccumulator:
     """All frames so far, and the sums of the one that is being filled."""
 
     def __init__(self, observable: FlowFrames, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.axes = tuple(case.box.index(axis) for axis in observable.axes)
         lengths = [case.box.size[axis] for axis in self.axes]
@@ -115,7 +111,6 @@ class FlowFramesAccumulator:
         self.sums = np.zeros((2 + self.case.box.dimension, *self.bins))  # number, mass, momentum
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         if self.samples == 0:
             self.positions.append(fluid.positions(self.ids).astype(np.float32))
         number, mass, momentum, _ = fluid.moments(self.axes, self.bins)
@@ -142,7 +137,6 @@ class FlowFramesAccumulator:
         return np.concatenate([densities, velocity]).astype(np.float32)
 
     def state(self) -> State:
-        """All it has to remember."""
         return {
             "frames": _stack(self.frames, (len(self.parts), *self.bins)),
             "positions": _stack(self.positions, (len(self.ids), self.case.box.dimension)),
@@ -153,7 +147,6 @@ class FlowFramesAccumulator:
         }
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.frames, self.positions = list(state["frames"]), list(state["positions"])
         self.times = [float(time) for time in state["times"]]
         self.sums = np.array(state["sums"])

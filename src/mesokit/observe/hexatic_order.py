@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -40,20 +40,15 @@ class HexaticOrder(Observable):
         if case.particles < 4:
             raise CaseError(f"hexatic-order: {case.particles} disks; expected 4 at least")
 
-    def accumulator(self, case: Case) -> HexaticOrderAccumulator:
-        """An empty memory for it."""
-        return HexaticOrderAccumulator(self, case)
 
-
+@accumulator_of(HexaticOrder)
 class HexaticOrderAccumulator(BlockAccumulator):
     """Block averages of both."""
 
     def __init__(self, observable: HexaticOrder, case: Case) -> None:
-        observable.check(case)
         self.name, self.blocks = observable.label, Blocks((2,))
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         psi = psi_6(spheres.positions(), spheres.box)
         self.blocks.add([np.abs(psi).mean(), abs(psi.mean())])
 

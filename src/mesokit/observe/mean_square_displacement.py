@@ -16,8 +16,9 @@ from mesokit.observe.shared.origins import GROUPS, Origins
 from mesokit.seam.engine import Particles
 from mesokit.seam.estimate import Estimate, fit
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -34,6 +35,7 @@ class Displacement(Protocol):
 
     It is made of a case and the observable, and raises CaseError where there is nothing to follow.
     `axes` are those that count; `length` particles make a molecule, of which there are `number`.
+    What is not overridden holds for particles without a theory.
     """
 
     axes: tuple[int, ...]
@@ -42,24 +44,31 @@ class Displacement(Protocol):
 
     def beads(self, wanted: int) -> Integers:
         """Numbers (molecules, length) of so many molecules, evenly spread, or of all."""
+        return spread_ids(wanted, self.number)[:, None]
 
     def expected(self, steps: Integers) -> Array | None:
         """The mean square displacement after so many steps; None without a theory."""
+        return None
 
     def coefficient(self) -> tuple[float, str]:
         """The diffusion coefficient, nan without a theory, and what to say of it."""
+        return math.nan, ""
 
     def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line, inf if never."""
+        return 0.0
 
     def grows(self) -> bool:
         """Whether D grows with the lag: in 2D where all momentum is kept."""
+        return False
 
     def level_from(self) -> float:
         """The lag from which on the displacement no longer grows, inf if it always does."""
+        return math.inf
 
     def legend(self) -> str:
         """What the theory is called in a figure."""
+        return ""
 
 
 @component
@@ -96,16 +105,13 @@ class MeanSquareDisplacement(Observable):
         """Raise CaseError without an axis or a molecule to follow."""
         self.displacement(case)
 
-    def accumulator(self, case: Case) -> MeanSquareDisplacementAccumulator:
-        """An empty memory for it."""
-        return MeanSquareDisplacementAccumulator(self, case)
-
 
 def _square_distance(old: Array, new: Array) -> Array:
     difference = new - old
     return np.einsum("ij,ij->i", difference, difference)
 
 
+@accumulator_of(MeanSquareDisplacement)
 class MeanSquareDisplacementAccumulator(BlockAccumulator):
     """Unwrapped positions at many origins."""
 
@@ -135,7 +141,6 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         return self.observable.of == "centres"
 
     def observe(self, engine: Particles) -> None:
-        """Take one sample."""
         position = engine.positions(self.ids, unwrapped=True)[:, list(self.axes)]
         if self.centres:
             position = position.reshape(self.theory.length, -1, len(self.axes)).mean(axis=0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -18,7 +18,7 @@ from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -134,19 +134,17 @@ class RadialDistribution(Observable):
             what = "molecules" if self.pairs == "between" else "particles or beads"
             raise CaseError(f"no pair to look at; expected two {what} at least")
 
-    def accumulator(self, case: Case) -> RadialDistributionAccumulator:
-        """An empty memory for it."""
-        return RadialDistributionAccumulator(self, case)
 
-
+@accumulator_of(RadialDistribution)
 class RadialDistributionAccumulator(BlockAccumulator):
     """Block averages of g in bins, and of molecules that know nothing of others their own pairs.
 
     Blocks of a run in which molecules stay near see little of what their pairs scatter.
     """
 
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "own")
+
     def __init__(self, observable: RadialDistribution, case: Case) -> None:
-        observable.check(case)
         self.name, self.case, self.observable = observable.label, case, observable
         self.theory = observable.theory(case)
         self.first, self.second = self.theory.first, self.theory.second
@@ -174,7 +172,6 @@ class RadialDistributionAccumulator(BlockAccumulator):
         return group.beads(min(group.number, most))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         found = self.counts(fluid, self.edges) / self.shells
         if len(self.near):
             beyond = self.counts(fluid, self.near) / shells(self.near, self.case.box.dimension)
@@ -184,24 +181,6 @@ class RadialDistributionAccumulator(BlockAccumulator):
             places = self.places(fluid, self.first, self.beads)[0]
             molecules = places.reshape(*self.beads[0].shape, -1)
             self.own.add(molecules, self.box, self.edges)
-
-    def state(self) -> State:
-        """All it has to remember."""
-        own = {} if self.own is None else pack(own=self.own)
-        return super().state() | own
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        super().restore(state)
-        if self.own is not None:
-            self.own.restore(unpack(state, "own"))
-
-    def pool(self, other: BlockAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        assert isinstance(other, RadialDistributionAccumulator)
-        super().pool(other)
-        if self.own is not None and other.own is not None:
-            self.own.pool(other.own)
 
     def number(self) -> float:
         """Pairs that there are at any distance, of all molecules and not only the sample."""

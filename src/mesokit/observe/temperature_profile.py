@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,13 @@ from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import KIND, Array, Compared, Profile, ProfileAccumulator
 from mesokit.seam.estimate import Estimate, of_ratio
 from mesokit.seam.method import method_of
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 
 class TemperatureInSlices(Protocol):
@@ -61,11 +63,8 @@ class TemperatureProfile(Profile):
         super(TemperatureProfile, self).check(case)  # noqa: UP008  # the decorator makes a new class
         self.theory(case)
 
-    def accumulator(self, case: Case) -> TemperatureProfileAccumulator:
-        """An empty memory for it."""
-        return TemperatureProfileAccumulator(self, case)
 
-
+@accumulator_of(TemperatureProfile)
 class TemperatureProfileAccumulator(ProfileAccumulator):
     """Number, mass, sum of m v^2 and momentum, (3 + d, bins, bins across the flow).
 
@@ -82,7 +81,7 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
             self.counts += (max(1, round(case.box.size[self.across] * observable.bins_per_cell)),)
         self.blocks = Blocks((width, *self.counts))
 
-    def sums(self, engine: Any) -> Array:
+    def sums(self, engine: RunningFluid | RunningSpheres) -> Array:
         """Number, mass, sum of m v^2 and momentum."""
         number, mass, momentum, energy = self.moments(engine)
         return np.concatenate([[number, mass, energy], momentum])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -12,7 +13,7 @@ from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import spread_ids
 
@@ -26,33 +27,40 @@ class VelocityMemory(Protocol):
     """What a method says of how long its particles remember their velocity.
 
     It is made of a case and the observable, and raises CaseError where there is nothing to follow.
-    `axes` are those that count.
+    `axes` are those that count. What is not overridden holds for particles without a theory.
     """
 
     axes: tuple[int, ...]
 
     def expected(self, steps: Integers) -> Array | None:
         """The autocorrelation of a component after so many steps; None without a theory."""
+        return None
 
     def legend(self) -> str:
         """What the theory is called in a figure."""
+        return ""
 
     def level(self, error: float, runs: int) -> tuple[float, float] | None:
         """The value at lag 0, nan if it is not known, and the error of the measured one over so
         many runs with what their starts add to it; None if it is not told."""
+        return math.nan, error
 
     def share(self, every: int) -> str | None:
         """What to say of the share that is left after a lag; None if it is not told."""
+        return None
 
     def diffusion(self, every: int) -> tuple[float, str] | None:
         """The diffusion coefficient that the integral is, and what to say of it; None if it is
         not told."""
+        return math.nan, ""
 
     def tail(self, time: Array) -> Array | None:
         """A hydrodynamic tail, nan where it does not hold; None without one."""
+        return None
 
     def crossing(self) -> float:
         """The time until which the tail holds."""
+        return math.inf
 
 
 @component
@@ -80,11 +88,8 @@ class VelocityAutocorrelation(Observable):
         """Raise CaseError without an axis to follow."""
         self.memory(case)
 
-    def accumulator(self, case: Case) -> VelocityAutocorrelationAccumulator:
-        """An empty memory for it."""
-        return VelocityAutocorrelationAccumulator(self, case)
 
-
+@accumulator_of(VelocityAutocorrelation)
 class VelocityAutocorrelationAccumulator(BlockAccumulator):
     """Velocities at many origins."""
 
@@ -102,7 +107,6 @@ class VelocityAutocorrelationAccumulator(BlockAccumulator):
         self.origins = Origins(len(self.ids), len(self.axes), max_lag)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         velocity = fluid.velocities(self.ids)[:, self.axes]
         self.origins.add(velocity, lambda old, new: np.einsum("ij,ij->i", old, new))
 

@@ -14,12 +14,13 @@ from mesokit.case.component import component, param, tag
 from mesokit.observe.shared import chi_square
 from mesokit.observe.shared.profile import KIND
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 FARTHEST = 5.0  # thermal velocities: what is beyond counts in the last bins
 
@@ -43,7 +44,7 @@ class Velocities(Protocol):
     taken_by_energy: float
     kept_energy: float
 
-    def numbers(self, engine: Any) -> Array:
+    def numbers(self, engine: RunningFluid | RunningSpheres) -> Array:
         """Velocities (n, d) over sqrt(kT/m)."""
 
     def warm(self, runs: int) -> float:
@@ -87,16 +88,12 @@ class VelocityDistribution(Observable):
         found: Velocities = method_of(case).expected["velocity-distribution"](case, self)
         return found
 
-    def accumulator(self, case: Case) -> VelocityDistributionAccumulator:
-        """An empty memory for it."""
-        return VelocityDistributionAccumulator(self, case)
 
-
+@accumulator_of(VelocityDistribution)
 class VelocityDistributionAccumulator(BlockAccumulator):
     """Block averages of both histograms, as shares of the particles, and of both chi-squares."""
 
     def __init__(self, observable: VelocityDistribution, case: Case) -> None:
-        observable.check(case)
         self.name, self.case, d = observable.label, case, case.box.dimension
         self.theory = observable.velocities(case)
         self.axis = self.theory.axis
@@ -111,8 +108,7 @@ class VelocityDistributionAccumulator(BlockAccumulator):
         self.of = [chi_square.classes(p, number) for p in self.probability]
         self.blocks = Blocks((2 * observable.bins + 2,))
 
-    def observe(self, engine: Any) -> None:
-        """Take one sample."""
+    def observe(self, engine: RunningFluid | RunningSpheres) -> None:
         u = self.theory.numbers(engine)
         shares, squares = [], []
         for k, values in enumerate((u[:, self.axis], np.linalg.norm(u, axis=1))):

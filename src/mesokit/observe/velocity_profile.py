@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,12 @@ from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import KIND, Array, Compared, Profile, ProfileAccumulator
 from mesokit.seam.estimate import Estimate, of_ratio
 from mesokit.seam.method import method_of
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 
 class FlowInSlices(Protocol):
@@ -68,11 +70,8 @@ class VelocityProfile(Profile):
         """A component along which nothing flows."""
         yield from self.theory(case).warnings()
 
-    def accumulator(self, case: Case) -> VelocityProfileAccumulator:
-        """An empty memory for it."""
-        return VelocityProfileAccumulator(self, case)
 
-
+@accumulator_of(VelocityProfile)
 class VelocityProfileAccumulator(ProfileAccumulator):
     """Momentum and mass of each slice."""
 
@@ -81,7 +80,7 @@ class VelocityProfileAccumulator(ProfileAccumulator):
         self.theory = observable.theory(case)
         self.component, self.ids = self.theory.component, self.theory.ids
 
-    def sums(self, engine: Any) -> Array:
+    def sums(self, engine: RunningFluid | RunningSpheres) -> Array:
         """Momentum along the component, and mass."""
         _, mass, momentum, _ = self.moments(engine)
         return np.stack([momentum[self.component], mass])

@@ -1,7 +1,5 @@
 """Potentials. A new one is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.potential.protocol import Angle, Bond, Pair
 

@@ -17,7 +17,6 @@ class Bending(Angle):
 
     @property
     def stiffness(self) -> float:
-        """Second derivative by the angle of a straight chain."""
         return self.kappa
 
     def kernel(self) -> Cosine:

@@ -23,7 +23,6 @@ class FENE(Bond):
         return self.R0
 
     def kernel(self) -> Finite:
-        """Parameters for the scalar functions below."""
         return Finite(self.k, self.R0 * self.R0)
 
 

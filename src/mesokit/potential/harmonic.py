@@ -26,7 +26,6 @@ class Harmonic(Bond):
         return math.inf
 
     def kernel(self) -> Square:
-        """Parameters for the scalar functions below."""
         return Square(self.K)
 
     def spring(self) -> theory.Spring:
@@ -48,7 +47,6 @@ class Spring(Bond):
         return math.inf
 
     def kernel(self) -> AboutLength:
-        """Parameters for the scalar functions below."""
         return AboutLength(self.k, self.length)
 
     def spring(self) -> theory.Spring | None:

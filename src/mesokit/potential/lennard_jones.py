@@ -21,7 +21,6 @@ class LennardJones(Pair):
 
     @property
     def reach(self) -> float:
-        """Distance beyond which there is no force."""
         return self.cutoff * self.sigma
 
     @property

@@ -4,8 +4,6 @@ Potentials of one class differ in numbers only: those lie in a table, a row for 
 compiled once for the class however many there are. Several classes are asked one after the other.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from typing import Any, NamedTuple

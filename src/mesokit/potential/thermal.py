@@ -1,7 +1,5 @@
 """What the temperature makes of a bond: how long it is, and how stiff where it goes."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Sequence
 from typing import Any, NamedTuple

@@ -22,7 +22,6 @@ class WCA(Pair):
 
     @property
     def reach(self) -> float:
-        """Distance beyond which there is no force."""
         return 2.0 ** (1.0 / 6.0) * self.sigma
 
     @property

@@ -1,7 +1,5 @@
 """A process that runs a case alone: what all ranks are asked, and how one answers."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar

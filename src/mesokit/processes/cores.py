@@ -1,7 +1,5 @@
 """The cores that this process may use, on every system."""
 
-from __future__ import annotations
-
 import os
 
 

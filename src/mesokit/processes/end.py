@@ -1,7 +1,5 @@
 """How a rank ends that others may wait for: one of them says why, and nobody stays behind."""
 
-from __future__ import annotations
-
 import os
 import sys
 import threading

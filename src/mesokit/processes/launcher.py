@@ -3,8 +3,6 @@
 MPI itself is asked only where there are several, as it takes time to load.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 

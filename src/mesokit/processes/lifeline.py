@@ -4,8 +4,6 @@ It holds a lock, of which the system lets go when that process ends in whatever 
 the lock, and the process that gets it ends.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import threading

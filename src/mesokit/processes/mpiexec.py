@@ -1,7 +1,5 @@
 """Ranks on this machine: they are started by `mpiexec`, and what becomes of them is said once."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib.util
 import os

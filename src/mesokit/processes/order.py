@@ -1,7 +1,5 @@
 """What rank 0 decides for all."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@ It gives them a folder, in which each notes its number, and the one that speaks 
 all of this ends with.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

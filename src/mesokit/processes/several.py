@@ -4,8 +4,6 @@ Nobody waits here while steps are done: orders come one ahead, and signals are t
 rank 0 looks for. Where all wait for rank 0, which writes, they sleep in between.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import sys

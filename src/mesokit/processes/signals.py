@@ -1,7 +1,5 @@
 """Signals that end a run at a checkpoint, and the exit status that tells which."""
 
-from __future__ import annotations
-
 import contextlib
 import signal
 import threading

@@ -1,7 +1,5 @@
 """Standard streams whose reader may leave, such as `| head`, without an end to the command."""
 
-from __future__ import annotations
-
 import io
 import os
 import sys

@@ -1,7 +1,5 @@
 """Functions of the user that a run calls every so many steps."""
 
-from __future__ import annotations
-
 import numbers
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Loading or compiling the kernels of a run, which is said if it takes long."""
 
-from __future__ import annotations
-
 import contextlib
 import sys
 import threading

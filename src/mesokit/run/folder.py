@@ -14,7 +14,8 @@ from mesokit.io import h5md
 from mesokit.io.frames import NONE_YET, require_frames
 from mesokit.io.measured import keep, take_up
 from mesokit.io.one_writer import alone
-from mesokit.io.run_directory import RunDirectory, now, provenance, recorded_case
+from mesokit.io.provenance import now, provenance, recorded_case
+from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.seam.method import summary_of
 

@@ -1,7 +1,5 @@
 """Compiling what a case runs, before it is run: for clusters, containers and wheels."""
 
-from __future__ import annotations
-
 import time
 from pathlib import Path
 from typing import NamedTuple

@@ -5,8 +5,6 @@ of 32 bits with the sign of the term. Of terms up to 2^44 units there are three 
 or no number, is counted by itself, and the sum is then nan.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Any

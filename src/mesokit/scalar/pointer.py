@@ -4,8 +4,6 @@ An array is seven machine words and a count of its users; a function that takes 
 its time on handing them over. An address is one word. Whoever makes a table keeps it alive.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -5,8 +5,6 @@ An engine holds the state of a simulation in memory and moves it on. Each method
 arrays here are in the order of particle numbers, whatever the layout in memory is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Protocol
 
@@ -176,11 +174,7 @@ class RunningSpheres(Particles, Protocol):
 
     `totals` and `moments` are as of a fluid, the latter of all or some. `spins` (n,) in 2D or (n,
     3) in 3D are angular velocities; `energies` tells "translation", "rotation" and "potential".
-    `wall_impulse` (surfaces, d) is the momentum that each surface has taken since the warm-up. Of
-    event-driven dynamics `collisions` counts since the warm-up those of pairs, those with walls,
-    and how many of them were elastic for following too soon; `virial` is the sum of r.dp over those
-    of pairs; and for `measures = ("free times",)` there are `free_times` between collisions: edges
-    of bins, counts (the last of longer ones), and sums of times and of squares.
+    `wall_impulse` (surfaces, d) is the momentum that each surface has taken since the warm-up.
     """
 
     def totals(self) -> tuple[int, Array, float]: ...
@@ -194,6 +188,17 @@ class RunningSpheres(Particles, Protocol):
     def energies(self) -> Mapping[str, float]: ...
     @property
     def wall_impulse(self) -> Array: ...
+
+
+class CollidingSpheres(RunningSpheres, Protocol):
+    """What observables may ask besides of an engine of event-driven dynamics.
+
+    `collisions` counts since the warm-up those of pairs, those with walls, and how many of them
+    were elastic for following too soon; `virial` is the sum of r.dp over those of pairs. For
+    `measures = ("free times",)` there are `free_times` between collisions: edges of bins, counts
+    (the last of longer ones), and sums of times and of squares.
+    """
+
     @property
     def collisions(self) -> tuple[int, int, int]: ...
     @property

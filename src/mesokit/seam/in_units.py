@@ -7,7 +7,7 @@ import functools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from mesokit.seam.method import method_of
 from mesokit.seam.units import CELLS, Units
@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.seam.result import Result
 
-F = TypeVar("F", bound=Callable[..., Any])
+P = ParamSpec("P")
+T = TypeVar("T")
 _SHOWN: ContextVar[Units] = ContextVar("units that figures show", default=CELLS)
 
 
@@ -30,7 +31,7 @@ def in_units(result: Result, case: Case) -> Result:
     units = units_of(case)
     if units == CELLS:
         return result
-    named: dict[str, Any] = {name: units.of(unit) for name, unit in result.units.items()}
+    named = {name: units.of(unit) for name, unit in result.units.items()}
     comparisons = (dataclasses.replace(c, unit=units.of(c.unit)) for c in result.comparisons)
     return dataclasses.replace(result, units=named, comparisons=tuple(comparisons))
 
@@ -50,12 +51,12 @@ def showing(case: Case | None) -> Iterator[None]:
         _SHOWN.reset(before)
 
 
-def of_case(draw: F) -> F:
+def of_case(draw: Callable[Concatenate[Case, P], T]) -> Callable[Concatenate[Case, P], T]:
     """A function of a case, and more, that draws in the units of that case."""
 
     @functools.wraps(draw)
-    def drawn(case: Case, *given: Any, **more: Any) -> Any:
+    def drawn(case: Case, *given: P.args, **more: P.kwargs) -> T:
         with showing(case):
             return draw(case, *given, **more)
 
-    return cast("F", drawn)
+    return drawn

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +21,11 @@ from mesokit.seam.units import Units
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.case.trajectory import Group
+    from mesokit.geometry.solids.solids import Solids
     from mesokit.seam.engine import Engine
 
+E = TypeVar("E")  # engine of a method
+S = TypeVar("S")  # state that it starts from
 Row = tuple[str, str, str]  # what, its value, and a word on it
 
 
@@ -34,10 +37,10 @@ class Summary(NamedTuple):
     rows: tuple[Row, ...]
     warnings: tuple[str, ...]
     seconds: float
-    numbers: Mapping[str, Any] = MappingProxyType({})
+    numbers: Mapping[str, object] = MappingProxyType({})
     memory: float = 0.0
 
-    def record(self) -> dict[str, Any]:
+    def record(self) -> dict[str, object]:
         """What `mesokit check --json` prints of it."""
         rows = [{"what": what, "value": value, "note": note} for what, value, note in self.rows]
         return {
@@ -48,17 +51,17 @@ class Summary(NamedTuple):
         }
 
 
-class Columns(NamedTuple):
+class Columns(NamedTuple, Generic[E]):
     """What a log may tell of the particles: all names, those that are usual, and how to find some
     of them in an engine."""
 
     names: tuple[str, ...]
     usual: tuple[str, ...]
-    read: Callable[[Any, Collection[str]], Mapping[str, float]]
+    read: Callable[[E, Collection[str]], Mapping[str, float]]
 
 
 SELDOM = 20  # steps between samples, from which on they cost little beside the steps
-NO_COLUMNS = Columns((), (), lambda engine, wanted: {})
+NO_COLUMNS: Columns[object] = Columns((), (), lambda engine, wanted: {})
 
 
 class BuildUp(NamedTuple):
@@ -82,7 +85,7 @@ class BuildUp(NamedTuple):
         return left * -math.expm1(-length / self.steps) * self.steps / length
 
 
-class InitialState(NamedTuple):
+class InitialState(NamedTuple, Generic[E, S]):
     """What a case starts from.
 
     read: of a case and arrays by name, what to start from, checked; raises CaseError. Whatever it
@@ -92,12 +95,12 @@ class InitialState(NamedTuple):
     keys that follow from the state it starts from; raises CaseError.
     """
 
-    read: Callable[[Case, Mapping[str, Any]], Any]
-    fill: Callable[[Any, Any], None]
+    read: Callable[[Case, Mapping[str, object]], S]
+    fill: Callable[[E, S], None]
     arrays: tuple[str, ...] = ()
     files: Callable[[Case], Mapping[str, Path]] = lambda case: {}
     run: str = ""
-    prepared: Callable[[Case, Mapping[str, Any]], Case] = lambda case, arrays: case
+    prepared: Callable[[Case, Mapping[str, object]], Case] = lambda case, arrays: case
 
     def missing(self, case: Case) -> list[str]:
         """A line for each file or folder that is not there."""
@@ -113,10 +116,17 @@ class Enclosure(NamedTuple):
     pictures show (`mesokit.geometry.solids.solids.Solids`) or None, both of a case."""
 
     closed_axes: Callable[[Case], set[int]] = lambda case: set()
-    solids: Callable[[Case], Any] = lambda case: None
+    solids: Callable[[Case], Solids | None] = lambda case: None
 
 
 NOT_ENCLOSED = Enclosure()
+
+
+class InSI(Protocol):
+    """Units of a case in SI; its text is the table that `mesokit check` shows."""
+
+    def record(self) -> Mapping[str, object]:
+        """The same as plain numbers by name, for the record of a run."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +189,7 @@ class Method:
     groups: Callable[[Case], tuple[Group, ...]]
     timestep: Callable[[Case], float]
     summary: Callable[[Case, int | None], Summary]
-    initial: InitialState
+    initial: InitialState[Any, Any]
     engine: Callable[[Case, int, Sequence[str]], Engine]
     box: tuple[str, ...] = ()
     keys: Mapping[str, str] = field(default_factory=dict)
@@ -187,8 +197,8 @@ class Method:
     enclosure: Enclosure = NOT_ENCLOSED
     bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
     keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
-    log: Callable[[Case], Columns] = lambda case: NO_COLUMNS
-    si: Callable[[Case], Any] | None = None
+    log: Callable[[Case], Columns[Any]] = lambda case: NO_COLUMNS
+    si: Callable[[Case], InSI] | None = None
     build_up: Callable[[Case], BuildUp | None] | None = None
     units: Units = Units()  # noqa: RUF009  a tuple of names
     check_ranks: Callable[[Case, int], None] | None = None

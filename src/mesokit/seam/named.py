@@ -1,7 +1,5 @@
 """Numbers by short names: `viscosity`, where only one of several begins so."""
 
-from __future__ import annotations
-
 import difflib
 import re
 from collections.abc import Iterable

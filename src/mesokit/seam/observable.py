@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from abc import ABC, abstractmethod, update_abstractmethods
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.floating[Any]]
 State = dict[str, NDArray[Any]]
+T = TypeVar("T", bound="Callable[[Any, Case], Accumulator]")
 
 
 class Accumulator(Protocol):
@@ -33,7 +34,7 @@ class Accumulator(Protocol):
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
 
-    def pool(self, other: Any) -> None:
+    def pool(self, other: Self) -> None:
         """Take in the samples of an independent run of the same case: only to read from then on."""
 
     def result(self) -> Result:
@@ -47,7 +48,7 @@ class Accumulator(Protocol):
     "Simulation(..., callbacks=[every(10, function)]) calls one, a class makes an observable",
 )
 @component
-class Observable(ABC):
+class Observable(ABC):  # noqa: B024  # `accumulator` is abstract
     """Something measured while the fluid runs."""
 
     methods: ClassVar[tuple[str, ...]] = ()  # it is for, beside those that offer it
@@ -78,12 +79,31 @@ class Observable(ABC):
         """What one should know before it is measured in this case, key first."""
         yield from ()
 
-    @abstractmethod
     def accumulator(self, case: Case) -> Accumulator:
-        """An empty memory for it."""
+        """An empty memory for it: a method of its own, or a class marked with `accumulator_of`."""
+        raise NotImplementedError
+
+    if not TYPE_CHECKING:  # type checkers do not see what `accumulator_of` adds
+        accumulator = abstractmethod(accumulator)
 
 
-def pack(**parts: Any) -> State:
+def accumulator_of(observable: type[Observable]) -> Callable[[T], T]:
+    """Mark the class of an observable's accumulators; each is made of the observable and a case."""
+
+    def mark(made: T) -> T:
+        def accumulator(self: Observable, case: Case) -> Accumulator:
+            """An empty memory for it."""
+            self.check(case)
+            return made(self, case)
+
+        observable.accumulator = accumulator  # type: ignore[method-assign]
+        update_abstractmethods(observable)
+        return made
+
+    return mark
+
+
+def pack(**parts: object) -> State:
     """The states of several parts (Blocks, MultipleTau, arrays) as one.
 
     >>> pack(rows=np.zeros(2))
@@ -112,20 +132,25 @@ class BlockAccumulator(ABC):
     """An accumulator that remembers what `memory` names: blocks, unless a subclass says more.
 
     Each is a part that has a state of its own (`Blocks`, `TimeSeries`, ...), a number or an array.
-    Parts that can pool those of another run do so; numbers and arrays stay those of this run.
+    A part that is None is left out. Parts that can pool those of another run do so; numbers and
+    arrays stay those of this run, unless they are `added`.
     """
 
     memory: ClassVar[tuple[str, ...]] = ("blocks",)
+    added: ClassVar[tuple[str, ...]] = ()  # numbers, arrays and lists that pooling adds up
     blocks: Blocks
 
     def state(self) -> State:
         """All it has to remember."""
-        return pack(**{name: getattr(self, name) for name in self.memory})
+        parts = {name: getattr(self, name) for name in self.memory}
+        return pack(**{name: part for name, part in parts.items() if part is not None})
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
         for name in self.memory:
             part: Any = getattr(self, name)
+            if part is None:
+                continue
             if hasattr(part, "restore"):
                 part.restore(unpack(state, name))
             elif hasattr(part, "from_state"):
@@ -134,9 +159,11 @@ class BlockAccumulator(ABC):
                 kind = type(part) if isinstance(part, int | float) else np.array
                 setattr(self, name, kind(state[name]))
 
-    def pool(self, other: Any) -> None:
+    def pool(self, other: Self) -> None:
         """Take in the samples of an independent run of the same case: only to read."""
         for name in self.memory:
             part = getattr(self, name)
             if hasattr(part, "pool"):
                 part.pool(getattr(other, name))
+        for name in self.added:
+            setattr(self, name, getattr(self, name) + getattr(other, name))

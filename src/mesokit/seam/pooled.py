@@ -1,14 +1,11 @@
 """Samples of several runs as one."""
 
-from __future__ import annotations
-
-from typing import Any
-
 from mesokit.case.component import show
 from mesokit.errors import RunError
+from mesokit.seam.observable import Accumulator
 
 
-def pool(name: str, accumulator: Any, other: Any) -> None:
+def pool(name: str, accumulator: Accumulator, other: Accumulator) -> None:
     """Add the samples of another run to those of an observable.
 
     Raises RunError where they cannot be pooled.

@@ -1,7 +1,5 @@
 """What lengths, times and masses are counted in: cells of MPCD, or whatever a case means by 1."""
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Some of many, chosen without chance."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

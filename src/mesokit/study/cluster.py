@@ -3,8 +3,6 @@
 Source: Dask and dask-jobqueue, which start workers as jobs of Slurm, PBS and others.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

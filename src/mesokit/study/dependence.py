@@ -1,7 +1,5 @@
 """A measured number against a parameter: points with error bars, theory, fits."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Callable, Sequence

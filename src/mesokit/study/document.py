@@ -1,7 +1,5 @@
 """The report of a study: one file that holds everything, to be read, printed or sent."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

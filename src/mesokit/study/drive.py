@@ -1,7 +1,5 @@
 """Carries the runs of a study to their ends, and tells how far they are."""
 
-from __future__ import annotations
-
 import signal
 import time
 from collections.abc import Sequence
@@ -52,11 +50,9 @@ class StudyReporter(Reporter):
         super().update(step)
 
     def amount(self, steps: int) -> str:
-        """How much there is to do."""
         return f"{self.runs - self.ended} of {self.runs} runs to do"
 
     def count(self) -> str:
-        """How much is done."""
         return f"{self.ended} of {self.runs} runs"
 
     def words(self, step: int) -> str:

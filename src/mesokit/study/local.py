@@ -1,7 +1,5 @@
 """Runs on the cores of this machine: in processes of their own, or in this one."""
 
-from __future__ import annotations
-
 import os
 import queue
 import signal

@@ -16,7 +16,8 @@ from mesokit.errors import RunError
 from mesokit.io import h5md
 from mesokit.io.atomic import delete_folder
 from mesokit.io.measured import measured
-from mesokit.io.run_directory import RunDirectory, now, provenance
+from mesokit.io.provenance import now, provenance
+from mesokit.io.run_directory import RunDirectory
 from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.caveats import with_those_of
 from mesokit.run.opened import RunFiles

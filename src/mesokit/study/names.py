@@ -1,7 +1,5 @@
 """What the keys of a case and measured numbers are called in pictures."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The table of a study as pages show it: number after number, with a line for each point."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 

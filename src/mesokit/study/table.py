@@ -1,7 +1,5 @@
 """What the runs of a study say together: every compared number, from the samples of all seeds."""
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """What a worker does: carry one run of a study to its end."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import os

@@ -1,7 +1,5 @@
 """Docstrings of components: what their authors wrote, and their keys, described when asked for."""
 
-from __future__ import annotations
-
 import inspect
 from typing import Any
 

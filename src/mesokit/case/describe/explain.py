@@ -1,7 +1,5 @@
 """What a key of a case file means: `mesokit explain`."""
 
-from __future__ import annotations
-
 import difflib
 import re
 from collections.abc import Iterator, Mapping, Sequence

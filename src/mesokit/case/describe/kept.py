@@ -1,7 +1,5 @@
 """The schema of case files kept on disk, as it takes seconds to make: all methods are imported."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import importlib.metadata

@@ -1,7 +1,5 @@
 """The keys of a component as rows of a table, read from its JSON schema."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple

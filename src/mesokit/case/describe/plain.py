@@ -4,8 +4,6 @@ Draft 7, which editors of TOML understand: nothing beside a `$ref`, no `null` (T
 at the end of descriptions, and tags required wherever they tell parts apart.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from contextvars import ContextVar
 from typing import Any

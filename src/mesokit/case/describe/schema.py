@@ -1,7 +1,5 @@
 """JSON schema of case files, those of every method: `mesokit schema`."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from mesokit.case import methods

@@ -1,7 +1,5 @@
 """What notebooks show of an object: a small table."""
 
-from __future__ import annotations
-
 import importlib
 from typing import Any
 

@@ -1,7 +1,5 @@
 """One array of numbers in a file of NumPy, whose shape is known before its numbers are read."""
 
-from __future__ import annotations
-
 import io
 import math
 import zipfile

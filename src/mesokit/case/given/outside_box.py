@@ -1,7 +1,5 @@
 """Positions to start from that lie outside of the box."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Collection
 from typing import Any

@@ -1,7 +1,5 @@
 """Histories of shear: how the shear rate of a box changes in time. A new one is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.case.shear.protocol import ShearHistory
 

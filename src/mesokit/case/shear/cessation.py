@@ -1,7 +1,5 @@
 """Cessation of steady shear: a steady shear rate, then rest."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from mesokit.case.component import component, param, tag

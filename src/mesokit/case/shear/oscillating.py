@@ -30,7 +30,6 @@ class OscillatingShear(ShearHistory):
 
     @property
     def largest(self) -> float:
-        """Largest size of the shear rate."""
         return abs(self.rate)
 
     @property

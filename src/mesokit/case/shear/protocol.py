@@ -5,8 +5,6 @@ of numbers, whose class picks the two scalar functions. They are asked for a `he
 height is the speed of what moves at that height, strain times height how far it has come.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from typing import Any, ClassVar

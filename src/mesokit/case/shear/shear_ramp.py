@@ -1,7 +1,5 @@
 """Ramp: a shear rate that grows evenly from one to another."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from mesokit.case.component import component, param, tag

@@ -1,7 +1,5 @@
 """Start-up of steady shear: rest, then a steady shear rate."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from mesokit.case.component import component, param, tag

@@ -23,7 +23,6 @@ class SteadyShear(ShearHistory):
 
     @property
     def largest(self) -> float:
-        """Largest size of the shear rate."""
         return abs(self.rate)
 
     def kernel(self, height: float) -> Even:

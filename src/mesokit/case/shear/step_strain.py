@@ -1,7 +1,5 @@
 """Step strain: a quick shear by so much, then rest."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from mesokit.case.component import component, param, tag

@@ -3,8 +3,6 @@
 Start-up, cessation, ramp and step strain are all of this kind, so that one kernel serves them.
 """
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -53,7 +51,6 @@ class InStages(ShearHistory):
 
     @property
     def largest(self) -> float:
-        """Largest size of the shear rate."""
         before, first, second = self.stages()
         later = before + first.change
         return max(map(abs, (before, later, later + (second.change if second else 0.0))))

@@ -5,8 +5,6 @@ the gradient is to 1: at edges and tips, and where the distances from two sides 
 distance make it steeper. There they are smoothed.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

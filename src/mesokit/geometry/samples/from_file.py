@@ -46,7 +46,6 @@ class FromFile(FromContents, Shape):
         return _found(self, self.digest, room)
 
     def body(self, room: Room) -> Region:
-        """What lies within the surface."""
         grid = self.distances(room)
         if grid.values.ndim != room.dimension:
             raise self.wrong(f"{grid.values.ndim}D, in a {room.dimension}D box")

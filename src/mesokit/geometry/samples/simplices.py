@@ -4,8 +4,6 @@ Each simplex is measured from the points of the grid around it. Which side a poi
 from how often the line along the last axis that ends there crosses the surface.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Shapes of walls. A new one is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.geometry.shape_protocol import Wall
 

@@ -57,7 +57,6 @@ class Array(Shape):
         return [[i * step for i, step in zip(count, steps, strict=True)] for count in counts]
 
     def body(self, room: Room) -> region.Region:
-        """What lies within the surface."""
         one = self.of.sided(self.of.body(room), room)
         return region.union(region.moved(one, place) for place in self.places(room))
 
@@ -79,10 +78,8 @@ class Array(Shape):
         return tuple(length / n for length, n in zip(room.size, self.repeat, strict=True))
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         return self.of.pivot(room)
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         parts = {f"of.{key}": value for key, value in self.of.vectors().items()}
         return parts | {"repeat": self.repeat}

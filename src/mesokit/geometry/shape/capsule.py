@@ -27,15 +27,12 @@ class Capsule(Simple):
             raise ValueError("end = start: expected another place; a ball is a disk or a sphere")
 
     def body(self, room: Room) -> region.Region:
-        """What lies within the surface."""
         return region.capsule(self.start, self.end, self.radius)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         return tuple(0.5 * (a + b) for a, b in zip(self.start, self.end, strict=True))
 
     def axis_of_rotation(self, room: Room) -> tuple[float, ...]:
-        """Unit vector about which a rotation given as a number turns."""
         if room.dimension == 2:
             return (0.0, 0.0, 1.0)
         span = [b - a for a, b in zip(self.start, self.end, strict=True)]
@@ -43,5 +40,4 @@ class Capsule(Simple):
         return tuple(x / size for x in span)
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         return {"start": self.start, "end": self.end}

@@ -55,5 +55,4 @@ class CosineChannel(Shape):
         return region.union(walls)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         return tuple(0.5 * length for length in room.size)

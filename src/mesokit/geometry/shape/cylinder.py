@@ -42,17 +42,13 @@ class Cylinder(Simple):
         return tuple(x / size for x in self.axis)
 
     def body(self, room: Room) -> region.Region:
-        """What lies within the surface."""
         return region.rod(self.centre, self.direction, self.radius)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         return self.centre
 
     def axis_of_rotation(self, room: Room) -> tuple[float, ...]:
-        """Unit vector about which a rotation given as a number turns."""
         return self.direction
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         return {"centre": self.centre}

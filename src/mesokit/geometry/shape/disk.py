@@ -23,13 +23,10 @@ class Disk(Simple):
     radius: float = param(doc="its radius", unit="a", gt=0)
 
     def body(self, room: Room) -> region.Region:
-        """What lies within the surface."""
         return region.ball(self.centre, self.radius)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         return self.centre
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         return {"centre": self.centre}

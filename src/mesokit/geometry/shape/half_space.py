@@ -31,13 +31,10 @@ class HalfSpace(Simple):
         return normal
 
     def body(self, room: Room) -> region.Region:
-        """What lies within the surface."""
         return region.half_space(self.point, self.normal)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         return self.point
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         return {"point": self.point, "normal": self.normal}

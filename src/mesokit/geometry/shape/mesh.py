@@ -90,7 +90,6 @@ class Mesh(FromFile):
         return _bodies(self.scale * np.asarray(mesh.vertices, float)[triangles], triangles)
 
     def grid(self, room: Room) -> Grid:
-        """Its signed distance, positive outside."""
         if room.dimension == 3 and self.height is not None:
             raise CaseError(f"height = {self.height:g}: only in 2D; leave it out")
         place = np.array(self.pivot(room))
@@ -167,11 +166,9 @@ class Mesh(FromFile):
         return found
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         return self.position or (0.0,) * room.dimension
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         return {} if self.position is None else {"position": self.position}
 
 

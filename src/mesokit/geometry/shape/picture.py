@@ -67,7 +67,6 @@ class Picture(FromFile):
         return self.origin or (0.0,) * len(lengths), self.size or lengths
 
     def grid(self, room: Room) -> Grid:
-        """Its signed distance, positive outside."""
         white = self._white()
         corner, size = self.frame(room)
         wide, high = (length / n for length, n in zip(size, white.shape, strict=True))
@@ -154,12 +153,10 @@ class Picture(FromFile):
         return np.ascontiguousarray((1.0 - alpha * (1.0 - grey))[::-1].T)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         corner, size = self.frame(room)
         return tuple(x + 0.5 * length for x, length in zip(corner, size, strict=True))
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         given = {"origin": self.origin, "size": self.size}
         return {key: value for key, value in given.items() if value is not None}
 

@@ -43,11 +43,9 @@ class Plates(Wall):
 
     @property
     def closed_axes(self) -> tuple[Axis, ...]:
-        """Axes of the box that it closes."""
         return (self.axis,)
 
     def surfaces(self) -> dict[str, Surface]:
-        """Its surfaces, by key."""
         return {"lower": self.lower, "upper": self.upper}
 
     @property

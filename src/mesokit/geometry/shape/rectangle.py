@@ -33,13 +33,10 @@ class Rectangle(Simple):
         return size
 
     def body(self, room: Room) -> region.Region:
-        """What lies within the surface."""
         return region.brick(self.centre, self.size, self.angle)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         return self.centre
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         return {"centre": self.centre, "size": self.size}

@@ -69,7 +69,6 @@ class Sampled(FromFile):
         return cls(file=str(file), spacing=spacing, **others)
 
     def grid(self, room: Room) -> Grid:
-        """Its signed distance, positive outside."""
         try:
             values = array_of_contents(self.contents)
         except (ValueError, EOFError):
@@ -95,7 +94,6 @@ class Sampled(FromFile):
                 )
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         if self.centre is not None:
             return self.centre
         grid = self.distances(room)
@@ -105,6 +103,5 @@ class Sampled(FromFile):
         )
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         given = {"origin": self.origin, "centre": self.centre}
         return {key: value for key, value in given.items() if value is not None}

@@ -25,13 +25,10 @@ class Union(Repeatable):
         require_plain(self.parts, "union")
 
     def body(self, room: Room) -> region.Region:
-        """What lies within the surface."""
         return region.union(part.sided(part.body(room), room) for part in self.parts)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
-        """The place about which it turns and torques are taken."""
         return middle(self.parts, room)
 
     def vectors(self) -> dict[str, Any]:
-        """Its parameters that have one number for each axis, by key."""
         return vectors_of(self.parts)

@@ -4,8 +4,6 @@ A cell of the grid lies anywhere: its shift is drawn at each step. Tables are ma
 intervals of the shift along each axis, and hold for every shift of the interval.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Sequence

@@ -4,8 +4,6 @@ A search takes a moment. That of the whole grid is kept for runs that follow; th
 a rank has, is put together from tiles, so that a block that moves a little is soon known.
 """
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Solids as tables for compiled code: their parts, and which of them are near each cell."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The loops over particles: each goes its own way, by random numbers of its own."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

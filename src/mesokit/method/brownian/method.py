@@ -18,10 +18,10 @@ from mesokit.case.warnings import run_warnings
 from mesokit.errors import CaseError
 from mesokit.method.brownian.engine import Brownians
 from mesokit.method.brownian.section import Sections
+from mesokit.observe import mean_square_displacement
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import Columns, InitialState, Method, Row, Summary
-from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -33,7 +33,7 @@ MANY_SIGMA = 10.0  # of a normal number: none is ever as far
 MOST_PARTICLES = 2**31 - 1  # numbers of random words are 32-bit
 
 
-class Displacement:
+class Displacement(mean_square_displacement.Displacement):
     """The mean square displacement of free particles: 2 D t along each axis (Einstein 1905)."""
 
     def __init__(self, case: Case, observable: Any) -> None:
@@ -44,10 +44,6 @@ class Displacement:
         self.length, self.number = 1, case.particles
         self.diffusion, self.timestep = case.brownian.diffusion, case.brownian.timestep
 
-    def beads(self, wanted: int) -> Integers:
-        """Numbers (n, 1) of so many particles, evenly spread."""
-        return spread_ids(wanted, self.number)[:, None]
-
     def expected(self, steps: Integers) -> Array:
         """2 d D t."""
         return 2 * len(self.axes) * self.diffusion * self.timestep * steps
@@ -55,18 +51,6 @@ class Displacement:
     def coefficient(self) -> tuple[float, str]:
         """D, which is exact."""
         return self.diffusion, "exact"
-
-    def diffusive_from(self) -> float:
-        """From the first step on."""
-        return 0.0
-
-    def grows(self) -> bool:
-        """Never: they do not know of one another."""
-        return False
-
-    def level_from(self) -> float:
-        """Never: nothing holds them."""
-        return float("inf")
 
     def legend(self) -> str:
         """The formula."""
@@ -149,7 +133,7 @@ def columns(case: Case) -> Columns:
     """Where the middle of all particles has gone to, of which the log of a run may tell."""
     names = tuple(f"centre {axis}" for axis in case.box.axes)
 
-    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+    def read(engine: Brownians, wanted: Collection[str]) -> dict[str, float]:
         centre = engine.positions(unwrapped=True).mean(axis=0)
         return {name: float(centre[names.index(name)]) for name in wanted}
 

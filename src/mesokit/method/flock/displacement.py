@@ -9,7 +9,7 @@ from mesokit import theory
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.statistics import spread_ids
+from mesokit.observe import mean_square_displacement
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 LATE = 5.0  # times in which a heading is forgotten, after which the way is a random walk
 
 
-class Displacement:
+class Displacement(mean_square_displacement.Displacement):
     """That of one bird alone is a walk whose steps remember; of others there is no theory.
 
     Raises CaseError for molecules and kinds, of which there are none, and without an axis to count.
@@ -46,10 +46,6 @@ class Displacement:
         alone = case.particles == 1 and given.cohesion is None and not case.walls
         self.memory = given.noise.memory(d) if alone else math.nan
 
-    def beads(self, wanted: int) -> Integers:
-        """Numbers (n, 1) of so many birds, evenly spread."""
-        return spread_ids(wanted, self.number)[:, None]
-
     def expected(self, steps: Integers) -> Array | None:
         """That of a persistent walk, of a bird alone."""
         if math.isnan(self.memory):
@@ -73,14 +69,6 @@ class Displacement:
         if self.memory <= 0:
             return self.timestep
         return LATE * self.timestep / -math.log(self.memory)
-
-    def grows(self) -> bool:
-        """Not known: birds keep no momentum."""
-        return False
-
-    def level_from(self) -> float:
-        """Never in a periodic box."""
-        return float("inf")
 
     def legend(self) -> str:
         """The walk of one bird."""

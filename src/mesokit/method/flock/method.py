@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -36,7 +36,7 @@ def columns(case: Case) -> Columns:
     """Polar order and mean heading, of which the log of a run may tell."""
     names = ("order", *(f"heading {axis}" for axis in case.box.axes))
 
-    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+    def read(engine: Flocks, wanted: Collection[str]) -> dict[str, float]:
         mean = engine.headings().mean(axis=0)
         told = dict(zip(names, (float(np.linalg.norm(mean)), *map(float, mean)), strict=True))
         return {name: told[name] for name in wanted}

@@ -12,6 +12,7 @@ from mesokit.seam.method import Columns
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid
 
 Array = NDArray[np.floating[Any]]
 
@@ -23,7 +24,7 @@ def columns(case: Case) -> Columns:
     momenta = tuple(f"momentum {axis}" for axis in case.box.axes)
     velocities = tuple(f"velocity {axis}" for axis in case.box.axes)
 
-    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+    def read(engine: RunningFluid, wanted: Collection[str]) -> dict[str, float]:
         number, momentum, kinetic = engine.totals()
         values = [temperature(case, number, momentum, kinetic), kinetic]
         if bonded:

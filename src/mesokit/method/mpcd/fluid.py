@@ -1,7 +1,5 @@
 """The fluid: how dense it is, how it collides, what drives it."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.case.component import component, param
@@ -11,10 +9,18 @@ from mesokit.method.mpcd.collision.srd import SRD
 from mesokit.method.mpcd.field import Force
 from mesokit.method.mpcd.field.none import NoForce
 from mesokit.method.mpcd.molecule import Molecule
-from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.start.section import Start
 from mesokit.method.mpcd.thermostat import Thermostat
 from mesokit.method.mpcd.thermostat.none import NoThermostat
+
+
+@component
+class Species:
+    """Particles of one mass in a mixture."""
+
+    mass: float = param(doc="mass of each particle", unit="m", ge=1e-3, le=1e3)
+    density: float = param(doc="particles of this kind per cell", unit="1/a^d", gt=0, le=1e12)
+
 
 NOT_GIVEN = 0.0  # no valid density or mass
 

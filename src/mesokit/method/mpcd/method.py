@@ -107,8 +107,7 @@ def _starts(case: Case) -> dict[str, Path]:
 
 
 def _keep_files(case: Case, folder: Path) -> Case:
-    from mesokit.io.part_files import kept_part
-    from mesokit.io.solid_files import kept
+    from mesokit.io.part_files import kept, kept_part
 
     case = kept_part(case, "fluid.force", folder)
     if not case.fluid.force.steady:

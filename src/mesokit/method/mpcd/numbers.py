@@ -1,7 +1,5 @@
 """The numbers that follow from a case."""
 
-from __future__ import annotations
-
 import dataclasses
 from dataclasses import dataclass
 from typing import Any

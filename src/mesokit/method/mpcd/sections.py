@@ -1,7 +1,5 @@
 """The sections of a case of MPCD."""
 
-from __future__ import annotations
-
 from mesokit.case.component import param
 from mesokit.case.describe.hints import Many
 from mesokit.geometry.shape import Wall

@@ -15,11 +15,9 @@ from mesokit.case.component import component, name_of, nearest, one_of, param, s
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.molecule import MOST_SUBSTEPS, PHASE, Molecule
+from mesokit.method.mpcd.solute.external import MagneticField, Pull, Trap
 from mesokit.method.mpcd.solute.free import FreeMolecule
-from mesokit.method.mpcd.solute.magnetic import MagneticField
 from mesokit.method.mpcd.solute.polymer import Between, Polymer
-from mesokit.method.mpcd.solute.pull import Pull
-from mesokit.method.mpcd.solute.trap import Trap
 from mesokit.method.mpcd.start.section import Start
 from mesokit.method.mpcd.topology import Links
 from mesokit.potential import Angle, Bond, Pair

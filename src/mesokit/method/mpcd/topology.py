@@ -3,8 +3,6 @@
 A bond leads from a bead that is placed to one that is not, but for the last of a ring.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

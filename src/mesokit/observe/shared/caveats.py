@@ -1,7 +1,5 @@
 """What pooled numbers take over of the notes of the runs that they are pooled from."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterable, Sequence
 

@@ -5,8 +5,6 @@ that are counted together. So the mean of chi-square over many moments, which ma
 another, has a known value: one for each class, less one, less what each conserved sum takes away.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

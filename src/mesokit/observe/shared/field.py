@@ -41,7 +41,6 @@ class FieldAccumulator(BlockAccumulator):
     """Block sums of `width` numbers for each bin."""
 
     def __init__(self, observable: Field, case: Case, width: int) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.axes = tuple(case.box.index(axis) for axis in observable.axes)
         self.bins = tuple(
@@ -58,7 +57,6 @@ class FieldAccumulator(BlockAccumulator):
         self.blocks = Blocks((width, *self.bins), capacity=CAPACITY)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         self.blocks.add(self.sample(*fluid.moments(self.axes, self.bins)))
 
     @abstractmethod

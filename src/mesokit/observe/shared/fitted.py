@@ -1,7 +1,5 @@
 """A fitted number beside theory, or why the fit has found none."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.seam.estimate import SURE

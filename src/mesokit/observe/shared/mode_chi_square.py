@@ -1,7 +1,5 @@
 """Chi-square of a profile against theory, over waves whose noise the run is long enough to know."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.observe.shared.origins import GROUPS
 from mesokit.seam.estimate import Array, of_mean
-from mesokit.seam.observable import BlockAccumulator, State, pack
+from mesokit.seam.observable import BlockAccumulator
 from mesokit.statistics import Blocks, student
 
 FEW = 5  # molecules: the scatter of fewer is no error bar
 ROUNDING = 1e-9  # of the scatter of molecules: what they have together never changed
 
 
-class OwnMeans:
+class OwnMeans(BlockAccumulator):
     """Each molecule's own mean over the run, of groups of them where there are many.
 
     Their scatter sees what takes longer than the run, which blocks of time cannot see.
@@ -28,12 +27,14 @@ class OwnMeans:
     width: numbers of each.
     """
 
+    memory: ClassVar[tuple[str, ...]] = ("sums", "samples")
+
     def __init__(self, molecules: int, width: int) -> None:
         groups = min(GROUPS, molecules)
         self._starts = np.arange(groups) * molecules // groups
         self._sizes = np.diff(np.append(self._starts, molecules))
-        self._sums = np.zeros((groups, width))
-        self._samples = 0
+        self.sums = np.zeros((groups, width))
+        self.samples = 0
         self._others: list[NDArray[np.float64]] = []  # means of the groups of pooled runs
 
     def add(self, each: Array) -> None:
@@ -42,8 +43,8 @@ class OwnMeans:
 
     def add_sums(self, sums: Array) -> None:
         """The same of the sums over the molecules of each group, (groups, width)."""
-        self._sums += sums
-        self._samples += 1
+        self.sums += sums
+        self.samples += 1
 
     @property
     def groups(self) -> int:
@@ -54,26 +55,18 @@ class OwnMeans:
         """The group of each of some molecules."""
         return np.searchsorted(self._starts, molecules, side="right") - 1
 
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(sums=self._sums, samples=self._samples)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self._sums, self._samples = np.array(state["sums"], float), int(state["samples"])
-
     def pool(self, other: OwnMeans) -> None:
         """Take in the molecules of an independent run: only to read from then on."""
         self._others += [other._own(), *other._others]
 
     def _own(self) -> NDArray[np.float64]:
         """Means (groups, width) of this run."""
-        return np.asarray(self._sums / (max(self._samples, 1) * self._sizes[:, None]))
+        return np.asarray(self.sums / (max(self.samples, 1) * self._sizes[:, None]))
 
     @property
     def number(self) -> int:
         """How many groups there are, those of pooled runs included."""
-        return len(self._sums) + sum(map(len, self._others))
+        return len(self.sums) + sum(map(len, self._others))
 
     def error(self, combine: Array | None = None) -> Array:
         """Standard errors of the mean over all, (width,) or of linear combinations (n, width).

@@ -20,6 +20,7 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 Array = NDArray[np.floating[Any]]
 KIND = "which of spheres.kinds: name, or number from 1 (all spheres unless said)"
@@ -53,7 +54,6 @@ class ProfileAccumulator(BlockAccumulator):
     """Block sums of `width` numbers for each slice."""
 
     def __init__(self, observable: Profile, case: Case, width: int) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.axis = case.box.index(observable.axis)
         self.bins = max(1, round(case.box.size[self.axis] * observable.bins_per_cell))
@@ -65,15 +65,14 @@ class ProfileAccumulator(BlockAccumulator):
         self.blocks = Blocks((width, self.bins))
         self.ids: NDArray[np.int64] | None = None  # of particles that count, None if all do
 
-    def observe(self, engine: Any) -> None:
-        """Take one sample."""
+    def observe(self, engine: RunningFluid | RunningSpheres) -> None:
         self.blocks.add(self.sums(engine))
 
     @abstractmethod
-    def sums(self, engine: Any) -> Array:
+    def sums(self, engine: RunningFluid | RunningSpheres) -> Array:
         """The (width, *counts) numbers to add up at this moment."""
 
-    def moments(self, engine: Any) -> tuple[Array, Array, Array, Array]:
+    def moments(self, engine: RunningFluid | RunningSpheres) -> tuple[Array, Array, Array, Array]:
         """Number, mass, momentum (d, *counts) and sum of m v^2 in the slices."""
         chosen = () if self.ids is None else (self.ids,)
         found: tuple[Array, Array, Array, Array] = engine.moments(self.axes, self.counts, *chosen)

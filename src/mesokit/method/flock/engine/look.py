@@ -5,8 +5,6 @@ of memory, for all birds of the cell; the loop over them has no branch and adds 
 that neither the order of birds nor cells nor threads changes a bit.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from mesokit.kernels.kernel import inner

@@ -1,7 +1,5 @@
 """The memory of birds: groups of arrays by name, and numbers that follow from a case."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple

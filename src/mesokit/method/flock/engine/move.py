@@ -4,17 +4,84 @@ What the loops over a strip need lies in rows of one array: the compiler then se
 overlap, and does several birds at once.
 """
 
-from __future__ import annotations
-
-from mesokit.geometry.protocol import exposed
+from mesokit.geometry.protocol import exposed, first_hit, happens, homed, settled, unmet
+from mesokit.geometry.solids.bodies import (
+    RULE,
+    SLIP,
+    Bodies,
+    part_normal,
+    surface_number,
+)
+from mesokit.geometry.solids.contact import MARGIN
+from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.kernel import inner
 from mesokit.method.flock.engine.memory import HEADING, PULL, STRIP, has_cohesion, past, sum_rows
-from mesokit.method.flock.engine.walls import flown
 from mesokit.method.flock.noise.protocol import turned
 from mesokit.scalar.fixed_point import ROUNDER, ROUNDER_BITS, bits
 from mesokit.scalar.intrinsics import floor  # noqa: F401  in the text of `boxes_away`
-from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
-from mesokit.scalar.vector import added, chosen, dot, scaled
+from mesokit.scalar.jit import by_type, elementwise, for_each, generic, scalar, seldom
+from mesokit.scalar.vector import added, added_scaled, chosen, dot, scaled
+
+MOST_HITS = 256  # in one step, pieces of a long flight included
+
+
+@generic
+def flown(solid, r, displacement, heading):
+    """Place and heading after a flight along `displacement` from r, in a step, with reflections."""
+
+
+@flown.register(Nothing)
+def _(solid, r, displacement, heading):
+    return added(r, displacement), heading
+
+
+@scalar
+def mirrored(u, n):
+    """A vector reflected at a plane with the normal n."""
+    return added_scaled(u, -2.0 * dot(n, u), n)
+
+
+@flown.register(Bodies)
+def _(solid, r, displacement, heading):
+    return reflected(solid, r, displacement, heading)
+
+
+@seldom
+def reflected(solid, r, displacement, heading):
+    """The flight among solids, with a velocity of `displacement` in a time of 1.
+
+    Surfaces with slip mirror it, others send it back the way it came. A heading that leads into
+    the surface is turned as the flight is. A bird that rounding leaves in a solid, or that still
+    flies after MOST_HITS, stays where it was.
+    """
+    still, time = scaled(0.0, displacement), 1.0
+    x, v, flying = homed(solid, r), displacement, True
+    away = added_scaled(r, -1.0, x)
+    contact = unmet(solid)
+    for _ in range(MOST_HITS):
+        hit, contact = first_hit(solid, x, v, still, time, contact)
+        if hit > time:
+            flying = False
+            break
+        x = added_scaled(x, hit, v)
+        time -= hit
+        if happens(solid, contact):
+            n = part_normal(solid.tables, contact[0], x)
+            x = added_scaled(x, MARGIN, n)
+            slips = surface_number(solid.tables, contact[1], RULE) == SLIP
+            v = mirrored(v, n) if slips else scaled(-1.0, v)
+            if dot(n, heading) < 0.0:
+                heading = mirrored(heading, n) if slips else scaled(-1.0, heading)
+        at_home = homed(solid, x)
+        away = added(away, added_scaled(x, -1.0, at_home))
+        x = at_home
+    x = added_scaled(x, time, v)
+    at_home = homed(solid, x)
+    away = added(away, added_scaled(x, -1.0, at_home))
+    place, good = settled(solid, at_home)
+    if flying or not good:
+        return r, heading
+    return added(place, away), heading
 
 
 @elementwise

@@ -3,8 +3,6 @@
 Which of the birds of a cell comes first depends on the threads; nothing that is computed does.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from mesokit.kernels.kernel import inner

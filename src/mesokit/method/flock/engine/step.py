@@ -1,7 +1,5 @@
 """Steps of a flock: sort, look, turn and move."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from mesokit.kernels.kernel import inner, kernel

@@ -34,7 +34,6 @@ class AngularNoise(Noise):
     )
 
     def kernel(self) -> Angular:
-        """Parameters for the scalar functions below."""
         return Angular(self.strength / (2 * math.pi))
 
     def memory(self, dimension: int) -> float:

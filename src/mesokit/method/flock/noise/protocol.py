@@ -3,8 +3,6 @@
 The first argument is the noise's NamedTuple of parameters; its class picks the implementation.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from typing import Any

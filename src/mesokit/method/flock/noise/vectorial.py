@@ -31,7 +31,6 @@ class VectorialNoise(Noise):
     )
 
     def kernel(self) -> Vectorial:
-        """Parameters for the scalar functions below."""
         return Vectorial(self.strength)
 
     def memory(self, dimension: int) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +13,13 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.method.flock.observe.protocol import FlockObservable
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.flock.engine.flocks import Flocks
     from mesokit.seam.engine import Array
 
 MOST_PAIRS = 5e7  # in one sample: more take gigabytes
@@ -58,16 +59,12 @@ class ClusterSizes(FlockObservable):
         """The distance in this case."""
         return float(case.flock.radius) if self.distance is None else self.distance
 
-    def accumulator(self, case: Case) -> ClusterSizesAccumulator:
-        """An empty memory for it."""
-        return ClusterSizesAccumulator(self, case)
 
-
+@accumulator_of(ClusterSizes)
 class ClusterSizesAccumulator(BlockAccumulator):
     """Block averages of the shares, the mean size and the largest."""
 
     def __init__(self, observable: ClusterSizes, case: Case) -> None:
-        observable.check(case)
         self.case, self.name, self.near = case, observable.label, observable.near(case)
         shut = closed_axes(case.walls)
         self.around = np.array(
@@ -76,8 +73,7 @@ class ClusterSizesAccumulator(BlockAccumulator):
         self.bins = case.particles.bit_length()
         self.blocks = Blocks(self.bins + 2)
 
-    def observe(self, engine: Any) -> None:
-        """Take one sample."""
+    def observe(self, engine: Flocks) -> None:
         sizes = clusters(engine.positions(), self.near, self.around)
         number = self.case.particles
         of_size = np.floor(np.log2(sizes) + 1e-9).astype(int)

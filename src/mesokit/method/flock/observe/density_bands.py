@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +13,13 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.flock.observe.protocol import FlockObservable, blind, mean_heading, open_box
 from mesokit.seam.estimate import of_mean, of_ratio
-from mesokit.seam.observable import BlockAccumulator
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.flock.engine.flocks import Flocks
     from mesokit.seam.engine import Array
 
 MOST_BINS = 2**16
@@ -52,16 +53,12 @@ class DensityBands(FlockObservable):
                 "do the profiles along them"
             )
 
-    def accumulator(self, case: Case) -> DensityBandsAccumulator:
-        """An empty memory for it."""
-        return DensityBandsAccumulator(self, case)
 
-
+@accumulator_of(DensityBands)
 class DensityBandsAccumulator(BlockAccumulator):
     """Block averages of number and heading in each bin, and of the longest waves."""
 
     def __init__(self, observable: DensityBands, case: Case) -> None:
-        observable.check(case)
         self.case, self.name, self.bins = case, observable.label, observable.bins
         self.axis = None if observable.axis is None else AXES.index(observable.axis)
         self.length = float(case.box.size[self.axis or 0])
@@ -69,8 +66,7 @@ class DensityBandsAccumulator(BlockAccumulator):
         wave = np.arange(1, WAVES + 1)[:, None]
         self.waves = np.exp(-2j * np.pi * wave * np.arange(FINE) / FINE)
 
-    def observe(self, engine: Any) -> None:
-        """Take one sample."""
+    def observe(self, engine: Flocks) -> None:
         headings = engine.headings()
         _, mean = mean_heading(headings)
         axis = int(np.argmax(np.abs(mean))) if self.axis is None else self.axis

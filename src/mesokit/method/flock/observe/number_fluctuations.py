@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +21,13 @@ from mesokit.method.flock.observe.protocol import (
     within,
 )
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, accumulator_of, pack
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.flock.engine.flocks import Flocks
     from mesokit.seam.engine import Array
 
 LARGEST = 0.25  # side of the largest squares unless said, in the shortest length of the box
@@ -77,39 +78,25 @@ class NumberFluctuations(FlockObservable):
                 f"sides = {show(list(sides))}: {number} squares; expected at most {MOST}"
             )
 
-    def accumulator(self, case: Case) -> NumberFluctuationsAccumulator:
-        """An empty memory for it."""
-        return NumberFluctuationsAccumulator(self, case)
 
-
-class NumberFluctuationsAccumulator:
+@accumulator_of(NumberFluctuations)
+class NumberFluctuationsAccumulator(BlockAccumulator):
     """Block averages of the variances, about the mean that is known, and of the polar order."""
 
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "order")
+
     def __init__(self, observable: NumberFluctuations, case: Case) -> None:
-        observable.check(case)
         self.case, self.name = case, observable.label
         self.sides = observable.all_sides(case)
         self.size = np.array(case.box.size, float)
         self.mean = case.particles * np.array(self.sides) ** len(self.size) / self.size.prod()
         self.blocks, self.order = Blocks(len(self.sides)), Blocks()
 
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, order=self.order)
-
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`, in which earlier versions had no order."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        if order := unpack(state, "order"):
-            self.order = Blocks.from_state(order)
+        super().restore(pack(order=self.order) | dict(state))
 
-    def pool(self, other: NumberFluctuationsAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
-        self.order.pool(other.order)
-
-    def observe(self, engine: Any) -> None:
-        """Take one sample."""
+    def observe(self, engine: Flocks) -> None:
         places = engine.positions()
         self.order.add(mean_heading(engine.headings())[0])
         self.blocks.add(

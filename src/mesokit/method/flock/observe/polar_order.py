@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -16,12 +16,13 @@ from mesokit.method.flock.observe.protocol import (
     mean_heading,
 )
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.flock.engine.flocks import Flocks
 
 MANY = 30  # birds, from which on their sum at random is as good as normal
 
@@ -36,10 +37,6 @@ class PolarOrder(FlockObservable):
 
     quantity: Literal["polar-order"] = tag("polar-order")
 
-    def accumulator(self, case: Case) -> PolarOrderAccumulator:
-        """An empty memory for it."""
-        return PolarOrderAccumulator(self, case)
-
 
 class Known(NamedTuple):
     """Mean, mean square and Binder cumulant by theory, nan where it has none, and what it says."""
@@ -50,18 +47,17 @@ class Known(NamedTuple):
     why: str = ""
 
 
+@accumulator_of(PolarOrder)
 class PolarOrderAccumulator(BlockAccumulator):
     """Powers of the order, and a time series of it and of the mean heading."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series")
 
     def __init__(self, observable: PolarOrder, case: Case) -> None:
-        observable.check(case)
         self.case, self.name = case, observable.label
         self.blocks, self.series = Blocks(3), TimeSeries(1 + case.box.dimension)
 
-    def observe(self, engine: Any) -> None:
-        """Take one sample."""
+    def observe(self, engine: Flocks) -> None:
         order, mean = mean_heading(engine.headings())
         self.blocks.add([order, order**2, order**4])
         self.series.add(engine.time, [order, *mean])

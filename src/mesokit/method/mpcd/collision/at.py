@@ -44,7 +44,6 @@ class AT(CollisionRule):
         return ("momentum",) * dimension
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
-        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
         return dimension
 
     def in_theory(self) -> dict[str, Any]:

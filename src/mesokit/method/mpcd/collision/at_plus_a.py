@@ -49,7 +49,6 @@ class ATPlusA(CollisionRule):
         return 3 * momentum + ("mass",) * 9 + 3 * momentum
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
-        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
         return 3 if dimension == 2 else 6
 
     def in_theory(self) -> dict[str, Any]:

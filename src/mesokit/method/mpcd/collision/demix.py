@@ -62,7 +62,6 @@ class Demix(CollisionRule):
         return ("mass",) + ("momentum",) * dimension
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
-        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
         return 4 if dimension == 2 else 7 + stretched
 
 

@@ -6,8 +6,6 @@ m v^2; a rule adds sums of its own. `r` is a position relative to the centre of 
 The first argument is the rule's NamedTuple of parameters; its class picks the implementation.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple

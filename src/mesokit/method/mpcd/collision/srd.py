@@ -60,7 +60,6 @@ class SRD(CollisionRule):
         return ()
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
-        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
         return 4 if dimension == 2 else 6 + stretched
 
     def problems(self, dimension: int) -> Iterator[str]:
@@ -83,7 +82,6 @@ class SRD(CollisionRule):
         return {"rule": "srd", "angle": self.angle if fixed else "uniform"}
 
     def heat_at_walls(self, gas: Gas) -> theory.HeatAtWalls:
-        """Conductivity of heat, and jump of the temperature at walls, of a gas that is not held."""
         given = gas._asdict()
         del given["thermostat"]
         return theory.heat_at_walls(**self.in_theory(), **given)

@@ -64,7 +64,6 @@ class SRDPlusA(CollisionRule):
         return ("mass",) * 9 + ("momentum",) * 9
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
-        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
         return 5 if dimension == 2 else 12
 
     def problems(self, dimension: int) -> Iterator[str]:

@@ -1,7 +1,5 @@
 """Particles by their numbers, so many at a time: what is made, sent or written is never all."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 

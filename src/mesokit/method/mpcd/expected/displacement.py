@@ -14,8 +14,6 @@ from mesokit.method.mpcd.expected.molecules import (
     crowd_note,
     free_diffusion,
     friction_of,
-    group_of,
-    kind_of,
     kirkwood,
     modes_of,
     rouse_note,
@@ -23,6 +21,7 @@ from mesokit.method.mpcd.expected.molecules import (
     springs_of,
     without_solutes,
 )
+from mesokit.method.mpcd.expected.selection import group_of, kind_of
 from mesokit.method.mpcd.expected.traps import LEVEL, held, trapped
 from mesokit.method.mpcd.molecule import FLUID
 

@@ -12,16 +12,15 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
-    Group,
     ends_at_rest,
     free_bond,
     free_diffusion,
     modes_at_rest,
     modes_of,
-    of_fluid,
     rouse_note,
     springs_of,
 )
+from mesokit.method.mpcd.expected.selection import Group, of_fluid
 from mesokit.method.mpcd.expected.traps import at_rest, pulls_on, trapped
 from mesokit.potential.thermal import mean_square
 

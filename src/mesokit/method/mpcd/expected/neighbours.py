@@ -7,8 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import Group, free_diffusion, kind_of
-from mesokit.method.mpcd.expected.selection import default_of, groups_of, independent
+from mesokit.method.mpcd.expected.molecules import free_diffusion
+from mesokit.method.mpcd.expected.selection import (
+    Group,
+    default_of,
+    groups_of,
+    independent,
+    kind_of,
+)
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

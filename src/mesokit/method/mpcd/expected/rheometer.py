@@ -9,7 +9,8 @@ import numpy as np
 
 from mesokit import theory
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import molecule_of, times_in_shear, without_bonds
+from mesokit.method.mpcd.expected.molecules import times_in_shear, without_bonds
+from mesokit.method.mpcd.expected.selection import molecule_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -1,15 +1,143 @@
-"""Particles or beads that an observable selects, and whether they are independent of others."""
+"""Particles, beads or molecules of an observable, and whether they are independent of others."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import show
+from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of
 from mesokit.method.mpcd.molecule import FLUID
+from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.mpcd.molecule import Molecule
+
+KIND = (
+    "which molecules: name or number, from 1, of solutes.polymers; 'fluid': those of the fluid, "
+    "which are also 1 where there are no solutes"
+)
+
+
+def of_fluid(case: Case, kind: int | str | None) -> bool:
+    """Whether a kind of molecules is that of the fluid: named so, or there is no other."""
+    return case.solutes is None or (kind == FLUID and case.fluid.molecule is not None)
+
+
+def molecule_of(case: Case, quantity: str = "this", kind: int | str = 1) -> Molecule:
+    """What the fluid is made of, or a kind of solutes. Raises CaseError if there is no such."""
+    solutes = case.solutes
+    if solutes is None or of_fluid(case, kind):
+        if case.fluid.molecule is None:
+            raise CaseError(f"{quantity} needs molecules; give fluid.molecule or solutes")
+        if kind not in (1, FLUID):
+            raise CaseError(
+                f"kind = {show(kind)}: expected 1 or {show(FLUID)} in a fluid of molecules"
+            )
+        return case.fluid.molecule
+    place = solutes.index_of(kind)
+    molecule = solutes.molecule(place)
+    if molecule is None:
+        raise CaseError(f"{quantity} needs molecules; solutes.polymers[#{place + 1}] are monomers")
+    return molecule
+
+
+class Group(NamedTuple):
+    """Particles of one kind: the id of the first, beads of a molecule, molecules, what they are."""
+
+    first: int
+    length: int
+    number: int
+    molecule: Molecule | None
+
+    def beads(self, wanted: int | None = None) -> NDArray[np.int64]:
+        """Ids (molecules, length) of all molecules, or of some that are evenly spread."""
+        chosen = np.arange(self.number) if wanted is None else spread_ids(wanted, self.number)
+        return self.first + chosen[:, None] * self.length + np.arange(self.length)
+
+
+def group_of(case: Case, of: str, kind: int | str | None = 1) -> Group:
+    """Those that an observable of "particles" (of the fluid), "beads", "centres" or "ends" follows.
+
+    Of particles `kind` is the number of a species, None all of them; of others None is the first of
+    solutes, or in a fluid of molecules alone these.
+    Raises CaseError if there are none.
+    """
+    molecule, solutes = case.fluid.molecule, case.solutes
+    if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
+        if case.fluid.species and kind is not None:
+            return _species(case, kind)
+        if kind not in (None, 1, FLUID):
+            raise CaseError(
+                f"kind = {show(kind)}: only with of = 'beads', 'centres' or 'ends', or with "
+                "fluid.species"
+            )
+        length = molecule.length if molecule else 1
+        return Group(0, length, case.particles // length, molecule)
+    kind = 1 if kind is None else kind
+    if solutes is None or of_fluid(case, kind):
+        found = molecule_of(case, f"of = {of!r}", kind)
+        return Group(0, found.length, case.particles // found.length, found)
+    if of == "particles":
+        raise CaseError("of = 'particles': a random solvent has none; expected 'beads'")
+    place = solutes.index_of(kind)
+    polymer = solutes.polymers[place]
+    if of == "ends":
+        molecule_of(case, f"of = {of!r}", kind)
+    first = case.particles + solutes.first_bead(place)
+    return Group(first, polymer.length, polymer.number, solutes.molecule(place))
+
+
+def kind_of(case: Case, group: Group) -> int | str:
+    """The kind whose molecules are a group."""
+    if case.solutes is None or group.first < case.particles:
+        return FLUID
+    kinds = range(len(case.solutes.polymers))
+    starts = [case.particles + case.solutes.first_bead(kind) for kind in kinds]
+    return 1 + starts.index(group.first)
+
+
+def _species(case: Case, kind: int | str) -> Group:
+    """Particles of one species."""
+    kinds = case.groups[0].kinds
+    if not isinstance(kind, int) or not 1 <= kind <= len(kinds):
+        raise CaseError(f"kind = {show(kind)}: expected 1 to {len(kinds)} (fluid.species)")
+    return Group(sum(one.number for one in kinds[: kind - 1]), 1, kinds[kind - 1].number, None)
+
+
+def beads_of(case: Case, wanted: int | None = None, kind: int | str = 1) -> NDArray[np.int64]:
+    """Ids of the beads (molecules, length) of all molecules, or of some that are evenly spread.
+
+    Beads of solutes are numbered after the particles of the fluid.
+    """
+    molecule_of(case, kind=kind)
+    return group_of(case, "beads", kind).beads(wanted)
+
+
+def bonds_of(case: Case, kind: int | str = 1) -> slice:
+    """Where the bonds of a kind are among all `bond_vectors`, of which the fluid's come first."""
+    own, count, first = case.fluid.molecule, 0, 0
+    if own is not None:
+        first = len(own.bonds) * (case.particles // own.length)
+    if case.solutes is None or of_fluid(case, kind):
+        return slice(0, first)
+    for k in range(case.solutes.index_of(kind) + 1):
+        molecule, first = case.solutes.molecule(k), first + count
+        count = len(molecule.bonds) * case.solutes.polymers[k].number if molecule else 0
+    return slice(first, first + count)
+
+
+def kinds_of_molecules(case: Case) -> list[int | str]:
+    """The molecules of the fluid, and each kind of solutes that are molecules."""
+    kinds: list[int | str] = [FLUID] if case.fluid.molecule is not None else []
+    if case.solutes is not None:
+        polymers = range(len(case.solutes.polymers))
+        kinds += [1 + k for k in polymers if case.solutes.molecule(k) is not None]
+    return kinds
 
 
 def default_of(case: Case, of: str | None) -> str:

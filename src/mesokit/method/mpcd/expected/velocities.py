@@ -15,6 +15,7 @@ from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningFluid
 
 Array = NDArray[np.float64]
 
@@ -53,7 +54,7 @@ class Velocities:
         alike = (weights @ np.sqrt(masses)) ** 2 / (weights.sum() * (weights @ masses))
         return float(alike * fluid.density * fluid.mass / setting.mass_density(self.case))
 
-    def numbers(self, fluid: Any) -> Array:
+    def numbers(self, fluid: RunningFluid) -> Array:
         """Velocities (n, d) over sqrt(kT/m)."""
         scale = np.sqrt(fluid.masses(self.ids) / self.case.fluid.kT)
         return np.asarray(fluid.velocities(self.ids) * scale[:, None])

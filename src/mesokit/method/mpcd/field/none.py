@@ -18,7 +18,6 @@ class NoForce(Force):
 
     @property
     def largest(self) -> float:
-        """Largest size of the acceleration."""
         return 0.0
 
     def uniform(self, dimension: int) -> tuple[float, ...]:

@@ -26,7 +26,6 @@ class OscillatingForce(Varying):
     phase: float = param(0.0, doc="at time 0; -90 makes a sine", unit="degrees", ge=-360, le=360)
 
     def at(self, time: float) -> float:
-        """The factor at a time."""
         return math.cos(self.frequency * time + math.radians(self.phase))
 
     def swing(self) -> Swing:

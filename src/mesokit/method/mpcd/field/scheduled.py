@@ -43,7 +43,6 @@ class ScheduledForce(Varying):
 
     @property
     def most(self) -> float:
-        """Largest size of the factor."""
         return max(abs(value) for value in self.factors)
 
     @functools.cached_property
@@ -51,7 +50,6 @@ class ScheduledForce(Varying):
         return np.ascontiguousarray([self.times, self.factors], float)  # known by its address
 
     def at(self, time: float) -> float:
-        """The factor at a time."""
         times, factors = self._table
         after = int(np.searchsorted(times, time, "right"))
         if after in (0, len(times)):

@@ -30,7 +30,6 @@ class Sinusoidal(Force):
 
     @property
     def largest(self) -> float:
-        """Largest size of the acceleration."""
         return abs(self.amplitude)
 
     def waves_across(self) -> int:
@@ -38,7 +37,6 @@ class Sinusoidal(Force):
         return self.waves
 
     def axes(self) -> dict[str, str]:
-        """Its parameters that are axes of the box, by key."""
         return {"flow": self.flow, "gradient": self.gradient}
 
     def problems(self, closed: Collection[str]) -> Iterator[str]:
@@ -63,11 +61,9 @@ class Sinusoidal(Force):
         )
 
     def drives(self, component: int) -> bool:
-        """Whether it acts along this axis, if it is not uniform."""
         return AXES.index(self.flow) == component
 
     def instability(self, reynolds: float, size: tuple[int, ...], across: int) -> str:
-        """Why its flow breaks up at this Reynolds number, "" if it does not."""
         if reynolds <= 1.4 or size[AXES.index(self.flow)] <= size[across] / self.waves:
             return ""
         return (

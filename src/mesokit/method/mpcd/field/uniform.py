@@ -21,7 +21,6 @@ class Uniform(Force):
 
     @property
     def largest(self) -> float:
-        """Largest size of the acceleration."""
         return math.hypot(*self.acceleration)
 
     def uniform(self, dimension: int) -> tuple[float, ...]:
@@ -29,7 +28,6 @@ class Uniform(Force):
         return self.acceleration
 
     def vectors(self) -> dict[str, tuple[float, ...]]:
-        """Its parameters that have one number for each axis, by key."""
         return {"acceleration": self.acceleration}
 
     def kernel(self, size: tuple[int, ...]) -> Everywhere:

@@ -31,7 +31,6 @@ class Varying(Force):
 
     @property
     def largest(self) -> float:
-        """Largest size of the acceleration."""
         return self.most * self.of.largest
 
     def largest_in(self, size: tuple[int, ...]) -> float:

@@ -1,7 +1,5 @@
 """What is measured of fluids of MPCD and of what is in them. A new observable is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.observe import Observable
 

@@ -11,18 +11,12 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    beads_of,
-    free_bond,
-    molecule_of,
-    shear_note,
-    times_in_shear,
-)
+from mesokit.method.mpcd.expected.molecules import free_bond, shear_note, times_in_shear
+from mesokit.method.mpcd.expected.selection import KIND, beads_of, molecule_of
 from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -47,11 +41,8 @@ class BondCorrelation(Observable):
         """Raise CaseError without molecules."""
         molecule_of(case, self.quantity, self.kind)
 
-    def accumulator(self, case: Case) -> BondCorrelationAccumulator:
-        """An empty memory for it."""
-        return BondCorrelationAccumulator(self, case)
 
-
+@accumulator_of(BondCorrelation)
 class BondCorrelationAccumulator:
     """Bonds at many origins, for each pair of axes."""
 
@@ -67,7 +58,6 @@ class BondCorrelationAccumulator:
         self.origins = [Origins(len(self.beads), size, lags) for _ in self.pairs]
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         bonds = r[:, self.ends[:, 1]] - r[:, self.ends[:, 0]]
         shape = bonds.shape[1:]
@@ -80,11 +70,9 @@ class BondCorrelationAccumulator:
             origins.add(bonds.reshape(len(bonds), -1), product)
 
     def state(self) -> State:
-        """All it has to remember."""
         return pack(**dict(zip(self.names(), self.origins, strict=True)))
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         for name, origins in zip(self.names(), self.origins, strict=True):
             origins.restore(unpack(state, name))
 

@@ -9,19 +9,11 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    bond_at_rest,
-    bonds_in_shear,
-    bonds_of,
-    group_of,
-    molecule_of,
-    of_fluid,
-    shear_note,
-)
+from mesokit.method.mpcd.expected.molecules import bond_at_rest, bonds_in_shear, shear_note
+from mesokit.method.mpcd.expected.selection import KIND, bonds_of, group_of, molecule_of, of_fluid
 from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.seam.engine import RunningFluid, Terms
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -40,16 +32,12 @@ class BondLength(Observable):
         """Raise CaseError for a fluid without bonds."""
         molecule_of(case, self.quantity, self.kind)
 
-    def accumulator(self, case: Case) -> BondLengthAccumulator:
-        """An empty memory for it."""
-        return BondLengthAccumulator(self, case)
 
-
+@accumulator_of(BondLength)
 class BondLengthAccumulator(MoleculeTensorAccumulator):
     """Block averages of the products."""
 
     def __init__(self, observable: BondLength, case: Case) -> None:
-        observable.check(case)
         molecules = group_of(case, "beads", observable.kind).number
         super().__init__(observable, case, ("bonds",), observable.kind, molecules)
         self.molecules = molecules
@@ -57,7 +45,6 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         self.bonds = bonds_of(case, observable.kind)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         d, bonds = self.case.box.dimension, self.bonds.stop - self.bonds.start
         units = [1.0] * (2 * d * d + 1)
         sums = fluid.sums_of_bonds(self.products, self.own.groups, units, self.bonds)

@@ -14,7 +14,7 @@ from mesokit.geometry.solids.solids import free_volume, solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared import chi_square
 from mesokit.seam.engine import RunningFluid, Some, Terms
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -40,18 +40,14 @@ class CellOccupancy(Observable):
         if (number := int(_whole_cells(case).sum())) < FEWEST:
             raise CaseError(f"{number} whole cells in the fluid; expected at least {FEWEST}")
 
-    def accumulator(self, case: Case) -> CellOccupancyAccumulator:
-        """An empty memory for it."""
-        return CellOccupancyAccumulator(self, case)
 
-
+@accumulator_of(CellOccupancy)
 class CellOccupancyAccumulator(BlockAccumulator):
     """Block averages of the shares of the cells, and of mean, variance and chi-square."""
 
     def __init__(self, observable: CellOccupancy, case: Case) -> None:
         from scipy.stats import poisson
 
-        observable.check(case)
         self.name, self.case = observable.label, case
         self.cells, mean = _whole_cells(case).ravel(), case.fluid.density
         self.first = max(0, math.floor(mean - REACH * math.sqrt(mean)))
@@ -73,7 +69,6 @@ class CellOccupancyAccumulator(BlockAccumulator):
         return np.asarray(whole)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         (number,) = fluid.sums_of_particles(self.cell_of, len(self.cells), [1.0])
         held = number.astype(np.int64)[self.cells]
         bins = np.clip(held - self.first, 0, len(self.numbers) - 1)

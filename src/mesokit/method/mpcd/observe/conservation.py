@@ -14,7 +14,7 @@ from mesokit.method.mpcd.columns import forgets, temperature
 from mesokit.method.mpcd.expected import setting
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
 from mesokit.seam.result import NOT_STEADY, Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -38,11 +38,8 @@ class Conservation(Observable):
     in_open_box: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
-    def accumulator(self, case: Case) -> ConservationAccumulator:
-        """An empty memory for it."""
-        return ConservationAccumulator(self, case)
 
-
+@accumulator_of(Conservation)
 class ConservationAccumulator:
     """The first sample, a thinned time series, block averages and the largest drift."""
 
@@ -60,7 +57,6 @@ class ConservationAccumulator:
         self.pooled = 1  # runs
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         number, momentum, energy = fluid.totals()
         warmth = temperature(self.case, number, momentum, energy)
         bound = [fluid.potential_energy()] if self.bonded else []
@@ -83,7 +79,6 @@ class ConservationAccumulator:
         self.counts = np.array([kept, stride, samples + 1])
 
     def state(self) -> State:
-        """All it has to remember."""
         return pack(
             blocks=self.blocks,
             rows=self.rows[: self.counts[0]],
@@ -93,7 +88,6 @@ class ConservationAccumulator:
         )
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.blocks = Blocks.from_state(unpack(state, "blocks"))
         self.rows[: len(state["rows"])] = state["rows"]
         self.first, self.drift = np.array(state["first"]), np.array(state["drift"])

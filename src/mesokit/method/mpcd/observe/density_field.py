@@ -10,6 +10,7 @@ from mesokit.case.component import component, tag
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.field import Array, Field, FieldAccumulator
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
@@ -26,11 +27,8 @@ class DensityField(Field):
 
     quantity: Literal["density-field"] = tag("density-field")
 
-    def accumulator(self, case: Case) -> DensityFieldAccumulator:
-        """An empty memory for it."""
-        return DensityFieldAccumulator(self, case)
 
-
+@accumulator_of(DensityField)
 class DensityFieldAccumulator(FieldAccumulator):
     """Density of each bin."""
 

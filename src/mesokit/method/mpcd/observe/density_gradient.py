@@ -16,7 +16,7 @@ from mesokit.method.mpcd.expected.compression import compression, unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, noted, of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -73,16 +73,12 @@ class DensityGradient(Observable):
         """Unit cells in the box."""
         return float(case.box.size[self.axis_of(case)]) / self.length_of(case)
 
-    def accumulator(self, case: Case) -> DensityGradientAccumulator:
-        """An empty memory for it."""
-        return DensityGradientAccumulator(self, case)
 
-
+@accumulator_of(DensityGradient)
 class DensityGradientAccumulator(BlockAccumulator):
     """Particles in each slice of a unit cell."""
 
     def __init__(self, observable: DensityGradient, case: Case) -> None:
-        observable.check(case)
         self.case, self.name = case, observable.label
         self.axis = observable.axis_of(case)
         self.length, self.repeats = observable.length_of(case), round(observable.repeats(case))
@@ -92,7 +88,6 @@ class DensityGradientAccumulator(BlockAccumulator):
         self.blocks = Blocks((self.slices,))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         number = fluid.moments((self.axis,), (self.bins,))[0]
         self.blocks.add(number.reshape(self.repeats, self.slices).sum(axis=0))
 

@@ -11,7 +11,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe.shared.periodic import periodic_all_over
 from mesokit.seam.engine import RunningFluid, Some, Terms
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import TimeSeries
 
@@ -49,18 +49,15 @@ class DomainSize(Observable):
                 f"largest = {self.largest:g}: expected {least:.4g} (one wave in the box) or more"
             )
 
-    def accumulator(self, case: Case) -> DomainSizeAccumulator:
-        """An empty memory for it."""
-        return DomainSizeAccumulator(self, case)
 
-
+@accumulator_of(DomainSize)
 class DomainSizeAccumulator(BlockAccumulator):
     """The series in time."""
 
     memory: ClassVar[tuple[str, ...]] = ("series", "samples")
+    added: ClassVar[tuple[str, ...]] = ("samples",)
 
     def __init__(self, observable: DomainSize, case: Case) -> None:
-        observable.check(case)
         self.name, self.size = observable.label, case.box.size
         first, second = (kind.number for kind in case.groups[0].kinds)
         self.first, mean = first, (first - second) / (first + second)
@@ -80,7 +77,6 @@ class DomainSizeAccumulator(BlockAccumulator):
         self.series, self.samples = TimeSeries(1, ROWS), np.zeros(1, np.int64)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         (colour,) = fluid.sums_of_particles(self.colour_of, math.prod(self.size), [1.0])
         power = abs(np.fft.rfftn(colour.reshape(self.size))[self.counts]) ** 2 / self.noise
         self.series.add(fluid.time, [self.size_of(power)])
@@ -98,11 +94,6 @@ class DomainSizeAccumulator(BlockAccumulator):
         if weight.sum() < CLEAR * np.sqrt((self.weights**2).sum()):
             return math.nan
         return float(2 * math.pi * weight.sum() / (weight @ self.lengths))
-
-    def pool(self, other: DomainSizeAccumulator) -> None:
-        """Take in an independent run of the same case, only to read: the series becomes a mean."""
-        self.series.pool(other.series)
-        self.samples = self.samples + other.samples
 
     def result(self) -> Result:
         """The series; a sample has no error bar: nan."""

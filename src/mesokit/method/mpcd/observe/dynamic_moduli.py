@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, option, tag
@@ -16,7 +14,7 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import rouse_note, rouse_times_of, without_bonds
 from mesokit.method.mpcd.observe.stress import PARTS, ROUSE, UNIT
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -55,16 +53,15 @@ class DynamicModuli(Observable):
                 f"{LEAST_SAMPLES}"
             )
 
-    def accumulator(self, case: Case) -> DynamicModuliAccumulator:
-        """An empty memory for it."""
-        return DynamicModuliAccumulator(self, case)
 
-
-class DynamicModuliAccumulator:
+@accumulator_of(DynamicModuli)
+class DynamicModuliAccumulator(BlockAccumulator):
     """Moduli of every period (parts, 2), and the sums of the period that is under way."""
 
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "squares", "products", "began", "samples")
+    added: ClassVar[tuple[str, ...]] = ("samples",)
+
     def __init__(self, observable: DynamicModuli, case: Case) -> None:
-        observable.check(case)
         self.case, self.name = case, observable.label
         oscillation = case.box.oscillation
         assert oscillation is not None
@@ -77,7 +74,6 @@ class DynamicModuliAccumulator:
         self.samples = np.zeros(1, np.int64)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         time = fluid.time
         if np.isnan(self.began[0]):
             self.began[0] = time
@@ -98,27 +94,6 @@ class DynamicModuliAccumulator:
         fitted = np.linalg.solve(self.squares, self.products)
         self.blocks.add(fitted[:2].T * self.frequency / self.amplitude)
         self.squares[:], self.products[:] = 0.0, 0.0
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(
-            blocks=self.blocks,
-            squares=self.squares,
-            products=self.products,
-            began=self.began,
-            samples=self.samples,
-        )
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        for name in ("squares", "products", "began", "samples"):
-            setattr(self, name, np.array(state[name]))
-
-    def pool(self, other: DynamicModuliAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
-        self.samples += other.samples
 
     def result(self) -> Result:
         """Both moduli by parts."""

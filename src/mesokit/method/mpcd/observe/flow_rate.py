@@ -18,7 +18,7 @@ from mesokit.method.mpcd.observe.shared.flow_memory import (
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import BuildUp
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
 
@@ -57,25 +57,20 @@ class FlowRate(Observable):
         flowing = setting.flowing_axes(case)
         return AXES.index(flowing[0]) if len(flowing) == 1 else 0
 
-    def accumulator(self, case: Case) -> FlowRateAccumulator:
-        """An empty memory for it."""
-        return FlowRateAccumulator(self, case)
 
-
+@accumulator_of(FlowRate)
 class FlowRateAccumulator(BlockAccumulator):
     """The superficial velocity: its average, and a time series that shows whether it is steady."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series")
 
     def __init__(self, observable: FlowRate, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.axis = observable.seen(case)
         self.mass = setting.superficial_mass(case)
         self.blocks, self.series = Blocks(), TimeSeries(1)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         _, momentum, _ = fluid.totals()
         velocity = momentum[self.axis] / self.mass
         self.blocks.add(velocity)

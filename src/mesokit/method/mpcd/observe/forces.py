@@ -24,7 +24,7 @@ from mesokit.method.mpcd.observe.wall_stress import PLATES, balance
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import SURE, Estimate, noted, of_mean
 from mesokit.seam.method import BuildUp
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result, with_error
 from mesokit.statistics import Blocks, TimeSeries
 
@@ -82,18 +82,14 @@ class Forces(Observable):
         elif setting.driven_axis(case) is None:
             raise CaseError("flow: missing; no force along one axis says which is that of the drag")
 
-    def accumulator(self, case: Case) -> ForcesAccumulator:
-        """An empty memory for it."""
-        return ForcesAccumulator(self, case)
 
-
+@accumulator_of(Forces)
 class ForcesAccumulator(BlockAccumulator):
     """Mean force and torque since the sample before, and the fluid's momentum."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series", "walls")
 
     def __init__(self, observable: Forces, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.dimension = d = case.box.dimension
         slit = slit_of(case)
@@ -107,7 +103,6 @@ class ForcesAccumulator(BlockAccumulator):
         self.series = TimeSeries(size, min(MOST_ROWS, 2 * max(NUMBERS // size // 2, 1)))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         impulse, steps = self.walls.take(fluid)
         if steps:
             taken = impulse.ravel() / (steps * self.case.fluid.timestep)

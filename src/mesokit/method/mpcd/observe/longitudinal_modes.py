@@ -12,10 +12,11 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.observe.shared.decay import fit_curve, normalised
 from mesokit.method.mpcd.observe.shared.modes import SHOWN, Array, Modes, ModesAccumulator
 from mesokit.observe.shared.fitted import fitted_number
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
+    pass
 
 FIRST = 3  # steps left out of the fit, as for transverse modes
 LONGEST = 2.5  # periods that the fit looks at
@@ -31,10 +32,6 @@ class LongitudinalModes(Modes):
     quantity: Literal["longitudinal-modes"] = tag("longitudinal-modes")
     asks_transport: ClassVar[bool] = True
 
-    def accumulator(self, case: Case) -> LongitudinalModesAccumulator:
-        """An empty memory for it."""
-        return LongitudinalModesAccumulator(self, case)
-
 
 def ringing(time: Array, damping: float, frequency: float, amplitude: float, sine: float) -> Array:
     """A damped oscillation."""
@@ -42,6 +39,7 @@ def ringing(time: Array, damping: float, frequency: float, amplitude: float, sin
     return np.asarray(np.exp(-damping * time) * wave)
 
 
+@accumulator_of(LongitudinalModes)
 class LongitudinalModesAccumulator(ModesAccumulator):
     """Correlators of the momentum along each wave vector."""
 

@@ -15,18 +15,12 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, mean_shape, stretched, undisturbed
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    ends_at_rest,
-    free_bond,
-    group_of,
-    modes_at_rest,
-    molecule_of,
-)
+from mesokit.method.mpcd.expected.molecules import ends_at_rest, free_bond, modes_at_rest
+from mesokit.method.mpcd.expected.selection import KIND, group_of, molecule_of
 from mesokit.method.mpcd.expected.traps import held, trapped
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State
+from mesokit.seam.observable import Observable, State, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -95,16 +89,12 @@ class MoleculeHistogram(Observable):
         """Number of the axis."""
         return flow_axis(case) if self.axis is None else case.box.index(self.axis)
 
-    def accumulator(self, case: Case) -> MoleculeHistogramAccumulator:
-        """An empty memory for it."""
-        return MoleculeHistogramAccumulator(self, case)
 
-
+@accumulator_of(MoleculeHistogram)
 class MoleculeHistogramAccumulator:
     """Shares of the molecules in fine bins."""
 
     def __init__(self, observable: MoleculeHistogram, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.group = group_of(case, "beads", observable.kind)
         self.beads = self.group.beads(observable.molecules)
@@ -135,7 +125,6 @@ class MoleculeHistogramAccumulator:
         return self.observable.of == "end-to-end" and self.observable.axis is not None
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         found = self.numbers(fluid)
         width = self.edges[1] - self.edges[0]
         place = np.floor((found - self.edges[0]) / width).astype(int)
@@ -164,11 +153,9 @@ class MoleculeHistogramAccumulator:
         return np.minimum(cosine, np.nextafter(1.0, 0.0))  # 1 is in the last bin
 
     def state(self) -> State:
-        """All it has to remember."""
         return self.means.state()
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.means.restore(state)
 
     def pool(self, other: MoleculeHistogramAccumulator) -> None:

@@ -9,19 +9,11 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.ideal import mean_shape
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    beads_of,
-    ends_at_rest,
-    free_bond,
-    group_of,
-    gyration,
-    modes_at_rest,
-    molecule_of,
-)
+from mesokit.method.mpcd.expected.molecules import ends_at_rest, free_bond, gyration, modes_at_rest
+from mesokit.method.mpcd.expected.selection import KIND, beads_of, group_of, molecule_of
 from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -43,11 +35,8 @@ class MoleculeSize(Observable):
         """Raise CaseError without molecules."""
         molecule_of(case, self.quantity, self.kind)
 
-    def accumulator(self, case: Case) -> MoleculeSizeAccumulator:
-        """An empty memory for it."""
-        return MoleculeSizeAccumulator(self, case)
 
-
+@accumulator_of(MoleculeSize)
 class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
     """Block averages of the tensors."""
 
@@ -58,7 +47,6 @@ class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
         super().__init__(observable, case, parts, observable.kind, len(self.beads))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         each = gyration(r)
         tensors, squares = [each], [(each**2).mean(axis=0)]

@@ -10,10 +10,10 @@ import numpy as np
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.ideal import flow_axis, ideal_sizes, undisturbed
-from mesokit.method.mpcd.expected.molecules import KIND, group_of, molecule_of
+from mesokit.method.mpcd.expected.selection import KIND, group_of, molecule_of
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import TimeSeries
 
@@ -50,7 +50,7 @@ class MoleculeTracks(Observable):
 
     def warnings(self, case: Case) -> Iterator[str]:
         """Say when a run is too long for every sample to be kept."""
-        kept = self.accumulator(case)
+        kept = MoleculeTracksAccumulator(self, case)
         samples = case.run.steps // self.every + 1
         if samples > kept.rows:
             yield (
@@ -59,18 +59,14 @@ class MoleculeTracks(Observable):
                 f"{2 ** int(np.ceil(np.log2(samples / kept.rows)))} samples"
             )
 
-    def accumulator(self, case: Case) -> MoleculeTracksAccumulator:
-        """An empty memory for it."""
-        return MoleculeTracksAccumulator(self, case)
 
-
+@accumulator_of(MoleculeTracks)
 class MoleculeTracksAccumulator(BlockAccumulator):
     """A series of every molecule, and means over all."""
 
     memory: ClassVar[tuple[str, ...]] = ("series", "means")
 
     def __init__(self, observable: MoleculeTracks, case: Case) -> None:
-        observable.check(case)
         self.case, self.name, self.kind = case, observable.label, observable.kind
         self.group = group_of(case, "beads", observable.kind)
         self.beads = self.group.beads(observable.molecules)
@@ -93,7 +89,6 @@ class MoleculeTracksAccumulator(BlockAccumulator):
         return ["gyration", *ends, *axes, *(f"v{a}" for a in axes)]
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         shape, d = (*self.beads.shape, self.dimension), self.dimension
         ids = self.beads.ravel()
         r = fluid.whole_positions(ids).reshape(shape)

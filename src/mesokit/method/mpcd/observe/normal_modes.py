@@ -11,22 +11,15 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import (
-    KIND,
-    beads_of,
-    mode_times_of,
-    modes_of,
-    molecule_of,
-    springs_of,
-    substep_of,
-)
+from mesokit.method.mpcd.expected.molecules import mode_times_of, modes_of, springs_of, substep_of
+from mesokit.method.mpcd.expected.selection import KIND, beads_of, molecule_of
 from mesokit.method.mpcd.observe.shared.decay import fit_curve, normalised
 from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
 from mesokit.method.mpcd.observe.transverse_modes import FEWEST, LOWEST, decaying
 from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import noted
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import MultipleTau
 
@@ -58,11 +51,8 @@ class NormalModes(Observable):
         """Raise CaseError without molecules."""
         molecule_of(case, self.quantity, self.kind)
 
-    def accumulator(self, case: Case) -> NormalModesAccumulator:
-        """An empty memory for it."""
-        return NormalModesAccumulator(self, case)
 
-
+@accumulator_of(NormalModes)
 class NormalModesAccumulator:
     """One correlator for each mode, over molecules and axes."""
 
@@ -79,7 +69,6 @@ class NormalModesAccumulator:
         self.correlators = [MultipleTau(shape, max_lag=max_lag, pooled=2) for _ in self.eigenvalues]
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         for correlator, x in zip(
             self.correlators, np.einsum("mid,ip->pmd", r, self.vectors), strict=True
@@ -87,11 +76,9 @@ class NormalModesAccumulator:
             correlator.add(x)
 
     def state(self) -> State:
-        """All it has to remember."""
         return pack(**{f"mode_{p}": c for p, c in enumerate(self.correlators)})
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.correlators = [
             MultipleTau.from_state(unpack(state, f"mode_{p}")) for p in range(self.count)
         ]

@@ -19,7 +19,7 @@ from mesokit.method.mpcd.observe.shared.swing import Series, amplitudes, in_slit
 from mesokit.method.mpcd.observe.shared.swing import comparisons as swings
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import (
     Blocks,
@@ -108,18 +108,14 @@ class Probe(Observable):
         flowing = setting.driven_axis(case)
         return 1 if flowing in (None, 0) else 0
 
-    def accumulator(self, case: Case) -> ProbeAccumulator:
-        """An empty memory for it."""
-        return ProbeAccumulator(self, case)
 
-
+@accumulator_of(Probe)
 class ProbeAccumulator(BlockAccumulator):
     """The time series of the velocity, and its average."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series", "last")
 
     def __init__(self, observable: Probe, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.dimension = d = case.box.dimension
         self.centre = np.array(observable.place(case))
@@ -133,7 +129,6 @@ class ProbeAccumulator(BlockAccumulator):
         self.last = np.zeros(d)  # the velocity where nobody is there to tell a new one
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         mass, d = self.case.fluid.mass, self.dimension
         units = [mass, *[math.sqrt(mass * self.case.fluid.kT)] * d]
         m, *momentum = fluid.sums_of_particles(self.inside, 1, units)[:, 0]
@@ -151,7 +146,6 @@ class ProbeAccumulator(BlockAccumulator):
         return np.zeros(len(m), np.int64), [m, *(m * some.velocities[inside].T)]
 
     def pool(self, other: ProbeAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         self.blocks.pool(other.blocks)
         self.others.append(other.series)
 

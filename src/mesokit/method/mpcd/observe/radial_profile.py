@@ -23,7 +23,7 @@ from mesokit.method.mpcd.observe.shared.shells import (
 )
 from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
@@ -70,16 +70,12 @@ class RadialProfile(Observable):
         if self.radii is not None and not 0 <= self.radii[0] < self.radii[1]:
             raise CaseError(f"radii = {show(self.radii)}: expected 0 <= innermost < outermost")
 
-    def accumulator(self, case: Case) -> RadialProfileAccumulator:
-        """An empty memory for it."""
-        return RadialProfileAccumulator(self, case)
 
-
+@accumulator_of(RadialProfile)
 class RadialProfileAccumulator(ShellAccumulator):
     """Sums in rings; velocities are radial, azimuthal and, in 3D, axial."""
 
     def __init__(self, observable: RadialProfile, case: Case) -> None:
-        observable.check(case)
         self.observable, self.name = observable, observable.label
         self.flow = round_flow(case)
         self.axis = AXES.index(observable.axis) if observable.axis else self.flow.axis

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +16,13 @@ from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import Solids, labels
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.ideal import drift_of
-from mesokit.method.mpcd.expected.molecules import KIND, group_of
+from mesokit.method.mpcd.expected.selection import KIND, group_of
 from mesokit.method.mpcd.observe.shared.durations import in_parts, ratio
 from mesokit.method.mpcd.observe.shared.events import EventAccumulator, Words
 from mesokit.observe.shared.origins import GROUPS
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -101,11 +101,8 @@ class ResidenceTime(Observable):
             raise CaseError(f"solid = {self.solid!r}: expected one of {', '.join(names)}")
         return Solids(case.walls, case.box, only=[names.index(self.solid)])
 
-    def accumulator(self, case: Case) -> ResidenceTimeAccumulator:
-        """An empty memory for it."""
-        return ResidenceTimeAccumulator(self, case)
 
-
+@accumulator_of(ResidenceTime)
 class ResidenceTimeAccumulator(EventAccumulator):
     """Who is inside, and since when.
 
@@ -113,8 +110,10 @@ class ResidenceTimeAccumulator(EventAccumulator):
     not).
     """
 
+    memory: ClassVar[tuple[str, ...]] = ("durations", "share")
+    added: ClassVar[tuple[str, ...]] = ("runs",)
+
     def __init__(self, observable: ResidenceTime, case: Case) -> None:
-        observable.check(case)
         words = Words("residence-time", observable.label, "residence time", "visits")
         super().__init__(case, words, "centres", observable.kind, observable.molecules)
         self.region, self.near, self.of = observable.region, observable.near, observable.of
@@ -126,7 +125,6 @@ class ResidenceTimeAccumulator(EventAccumulator):
         self.runs: list[ResidenceTimeAccumulator] = [self]  # those that are pooled
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         inside, time, now = self.within(self.each(fluid)), float(fluid.time), self.now
         self.samples_here += 1
         self.durations.look(time)
@@ -153,22 +151,6 @@ class ResidenceTimeAccumulator(EventAccumulator):
             body, distance, _ = self.look((places % self.size).reshape(-1, len(self.size)))
             there = ((body >= 0) & (distance <= self.near)).reshape(places.shape[:2])
         return np.asarray(there.any(axis=1))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return super().state() | pack(share=self.share)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        super().restore(state)
-        self.share.restore(unpack(state, "share"))
-
-    def pool(self, other: EventAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        assert isinstance(other, ResidenceTimeAccumulator)
-        super().pool(other)
-        self.share.pool(other.share)
-        self.runs += other.runs
 
     def result(self) -> Result:
         """The distribution of the times, and what they are in the mean."""

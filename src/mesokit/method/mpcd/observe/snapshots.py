@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.groups import groups
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import spread_ids
 
@@ -58,16 +58,18 @@ class Snapshots(Observable):
                 f"{case.run.steps}"
             )
 
-    def accumulator(self, case: Case) -> SnapshotsAccumulator:
-        """An empty memory for it."""
-        return SnapshotsAccumulator(self, case)
 
+@accumulator_of(Snapshots)
+class SnapshotsAccumulator(BlockAccumulator):
+    """What was seen so far, (steps, particles, 4): two coordinates and two velocities.
 
-class SnapshotsAccumulator:
-    """What was seen so far, (steps, particles, 4): two coordinates and two velocities."""
+    Of pooled runs those of the first are kept: places of two runs have no mean.
+    """
+
+    memory: ClassVar[tuple[str, ...]] = ("seen", "times", "looks")
+    added: ClassVar[tuple[str, ...]] = ("looks",)
 
     def __init__(self, observable: Snapshots, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.columns = [case.box.index(axis) for axis in observable.axes]
         self.ids = spread_ids(observable.particles, case.particles)
@@ -85,19 +87,6 @@ class SnapshotsAccumulator:
         row = np.concatenate([r[:, self.columns], v[:, self.columns]], axis=1)
         self.seen = np.concatenate([self.seen, row[None]])
         self.times = np.concatenate([self.times, [[step, fluid.time]]])
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return {"seen": self.seen.copy(), "times": self.times.copy(), "looks": np.array(self.looks)}
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.seen, self.times = np.array(state["seen"]), np.array(state["times"])
-        self.looks = int(state["looks"])
-
-    def pool(self, other: SnapshotsAccumulator) -> None:
-        """Those of the first run are kept: places of two runs have no mean."""
-        self.looks += other.looks
 
     def result(self) -> Result:
         """What was seen, in the order of the steps."""

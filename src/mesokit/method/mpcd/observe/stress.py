@@ -20,7 +20,7 @@ from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH, kept
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
 from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -51,16 +51,12 @@ class Stress(Observable):
         if case.walls:
             raise CaseError("stress is measured without walls; use wall-stress")
 
-    def accumulator(self, case: Case) -> StressAccumulator:
-        """An empty memory for it."""
-        return StressAccumulator(self, case)
 
-
+@accumulator_of(Stress)
 class StressAccumulator(TensorAccumulator):
     """Block averages of both parts and their sum."""
 
     def __init__(self, observable: Stress, case: Case) -> None:
-        observable.check(case)
         self.bonded_beads = case.fluid.molecule is not None or case.solutes is not None
         self.given = PARTS[: 3 if self.bonded_beads else 2]
         self.every = observable.every
@@ -70,7 +66,6 @@ class StressAccumulator(TensorAccumulator):
         super().__init__(observable, case, (*self.given, "total"))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         parts = [fluid.stress[name] for name in self.given]
         self.blocks.add(np.stack([*parts, sum(parts[1:], parts[0])]))
 
@@ -112,7 +107,6 @@ class StressAccumulator(TensorAccumulator):
         return scale * float(squares * kept_of_modes / self.blocks.series) ** 0.5
 
     def summed(self, part: int, weight: Array) -> tuple[float, float]:
-        """Sum of the elements of a part with these weights (d, d), and its standard error."""
         value, error = super().summed(part, weight)
         return value, float(np.maximum(error, self.least(weight) if self.bonds_in(part) else 0.0))
 
@@ -121,7 +115,6 @@ class StressAccumulator(TensorAccumulator):
         return self.bonded_beads and part % len(self.parts) >= 2
 
     def errors(self) -> Array:
-        """Standard errors (parts, d, d)."""
         found, d = self.blocks.error(), self.case.box.dimension
         if not self.blocks.count or not self.bonded_beads:
             return found

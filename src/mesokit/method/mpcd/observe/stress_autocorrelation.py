@@ -17,7 +17,7 @@ from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
 from mesokit.method.mpcd.observe.stress import UNIT
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import MultipleTau
 
@@ -52,18 +52,15 @@ class StressAutocorrelation(Observable):
         if setting.driven(case):
             raise CaseError("stress-autocorrelation: only of a fluid at rest")
 
-    def accumulator(self, case: Case) -> StressAutocorrelationAccumulator:
-        """An empty memory for it."""
-        return StressAutocorrelationAccumulator(self, case)
 
-
+@accumulator_of(StressAutocorrelation)
 class StressAutocorrelationAccumulator(BlockAccumulator):
     """A correlator of the elements off the diagonal."""
 
     memory: ClassVar[tuple[str, ...]] = ("correlator",)
+    added: ClassVar[tuple[str, ...]] = ("runs",)
 
     def __init__(self, observable: StressAutocorrelation, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         max_lag = None if observable.max_lag is None else observable.max_lag // observable.every
         d = case.box.dimension
@@ -74,11 +71,6 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         """Take one sample. Rules that do not conserve angular momentum have no symmetric stress."""
         stress = np.sum(list(fluid.stress.values()), axis=0)
         self.correlator.add(stress[~np.eye(len(stress), dtype=bool)])
-
-    def pool(self, other: StressAutocorrelationAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.correlator.pool(other.correlator)
-        self.runs += other.runs
 
     def modulus(self) -> tuple[Array, Estimate]:
         """Time (n,) and G(t) with what each block of time adds to it."""

@@ -18,7 +18,7 @@ from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.method.mpcd.observe.stress import UNIT
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of, unpack
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks, student
 
@@ -81,10 +81,6 @@ class StressInTime(Observable):
                 "nothing will be told"
             )
 
-    def accumulator(self, case: Case) -> StressInTimeAccumulator:
-        """An empty memory for it."""
-        return StressInTimeAccumulator(self, case)
-
 
 def steps_of_period(case: Case) -> int | None:
     """Steps after which the shear repeats; None if it does not, or not at a step."""
@@ -96,11 +92,13 @@ def steps_of_period(case: Case) -> int | None:
     return steps if fits else None
 
 
-class StressInTimeAccumulator:
+@accumulator_of(StressInTime)
+class StressInTimeAccumulator(BlockAccumulator):
     """Sums over the windows of the time that is under way, and block averages of whole periods."""
 
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "sums", "counts", "first", "samples")
+
     def __init__(self, observable: StressInTime, case: Case) -> None:
-        observable.check(case)
         self.case, self.name, self.window = case, observable.label, observable.window
         self.samples_of_window = observable.window // observable.every
         self.bonded = case.fluid.molecule is not None or case.solutes is not None
@@ -152,16 +150,6 @@ class StressInTimeAccumulator:
         self.counts = np.concatenate([self.counts, np.zeros(more, np.int64)])
         self.rows = rows
 
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(
-            blocks=self.blocks,
-            sums=self.sums,
-            counts=self.counts,
-            first=self.first,
-            samples=self.samples,
-        )
-
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`, maybe of a run that was to be shorter or longer."""
         if self.period:
@@ -173,8 +161,7 @@ class StressInTimeAccumulator:
         self.first, self.samples = np.array(state["first"]), np.array(state["samples"])
 
     def pool(self, other: StressInTimeAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
+        super().pool(other)
         self.others.append(other)
 
     def estimate(self) -> tuple[NDArray[np.int64], Estimate]:

@@ -13,12 +13,19 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import KIND, Group, free_bond, kind_of
-from mesokit.method.mpcd.expected.selection import default_of, groups_of, independent
+from mesokit.method.mpcd.expected.molecules import free_bond
+from mesokit.method.mpcd.expected.selection import (
+    KIND,
+    Group,
+    default_of,
+    groups_of,
+    independent,
+    kind_of,
+)
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import spread_ids
 
@@ -74,11 +81,8 @@ class StructureFactor(Observable):
             return groups_of(case, "beads", 1 if self.kind is None else self.kind)
         return groups_of(case, of, self.kind)
 
-    def accumulator(self, case: Case) -> StructureFactorAccumulator:
-        """An empty memory for it."""
-        return StructureFactorAccumulator(self, case)
 
-
+@accumulator_of(StructureFactor)
 class StructureFactorAccumulator(BlockAccumulator):
     """Means of each shell; of chains also of groups of them, of others of each wave.
 
@@ -89,7 +93,6 @@ class StructureFactorAccumulator(BlockAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("means", "sums")
 
     def __init__(self, observable: StructureFactor, case: Case) -> None:
-        observable.check(case)
         self.name, self.case = observable.label, case
         self.of, self.groups = default_of(case, observable.of), observable.chosen(case)
         self.kind = observable.kind
@@ -110,7 +113,6 @@ class StructureFactorAccumulator(BlockAccumulator):
         return np.asarray(np.add.reduceat(each, self.starts, axis=-1) / self.members)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         if self.of == "chains":
             beads = self.beads
             r = fluid.whole_positions(beads.ravel()).reshape(*beads.shape, -1)
@@ -150,7 +152,6 @@ class StructureFactorAccumulator(BlockAccumulator):
         return found
 
     def pool(self, other: StructureFactorAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         if not self.others:
             self.others = self.of_waves()
         self.others += other.of_waves()

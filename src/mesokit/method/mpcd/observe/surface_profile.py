@@ -20,7 +20,7 @@ from mesokit.method.mpcd.observe.shared.shells import (
     shell_volumes,
 )
 from mesokit.seam.estimate import Estimate
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
@@ -70,16 +70,12 @@ class SurfaceProfile(Observable):
                 "the speed"
             )
 
-    def accumulator(self, case: Case) -> SurfaceProfileAccumulator:
-        """An empty memory for it."""
-        return SurfaceProfileAccumulator(self, case)
 
-
+@accumulator_of(SurfaceProfile)
 class SurfaceProfileAccumulator(ShellAccumulator):
     """Sums in shells; velocities are out of the surface, along it, and across both (3D)."""
 
     def __init__(self, observable: SurfaceProfile, case: Case) -> None:
-        observable.check(case)
         self.observable, self.name = observable, observable.label
         solids = solids_of(case)
         self.look = solids.depths(observable.depth)

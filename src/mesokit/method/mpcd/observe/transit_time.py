@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import drift_of, flow_axis, flow_sign
-from mesokit.method.mpcd.expected.molecules import KIND, group_of
+from mesokit.method.mpcd.expected.selection import KIND, group_of
 from mesokit.method.mpcd.observe.shared.durations import sum_error
 from mesokit.method.mpcd.observe.shared.events import (
     EventAccumulator,
@@ -23,7 +23,7 @@ from mesokit.method.mpcd.observe.shared.events import (
 )
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -65,19 +65,17 @@ class TransitTime(Observable):
         """Number of the axis."""
         return flow_axis(case) if self.axis is None else case.box.index(self.axis)
 
-    def accumulator(self, case: Case) -> TransitTimeAccumulator:
-        """An empty memory for it."""
-        return TransitTimeAccumulator(self, case)
 
-
+@accumulator_of(TransitTime)
 class TransitTimeAccumulator(EventAccumulator):
     """Where each molecule was, the next plane that it has not been at, and when it was at the last.
 
     Memory: `time`, `place`, `plane` (number of the next), `since` (nan before the first plane).
     """
 
+    memory: ClassVar[tuple[str, ...]] = ("durations", "velocity")
+
     def __init__(self, observable: TransitTime, case: Case) -> None:
-        observable.check(case)
         words = Words("transit-time", observable.label, "transit time", "transits")
         super().__init__(case, words, observable.of, observable.kind, observable.molecules)
         self.axis = observable.axis_of(case)
@@ -86,7 +84,6 @@ class TransitTimeAccumulator(EventAccumulator):
         self.velocity = MeansOverMolecules(len(self.beads), 1, self.everything)
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         place = self.sign * self.each(fluid)[:, :, self.axis].mean(axis=1)
         time, now = float(fluid.time), self.now
         self.samples_here += 1
@@ -112,21 +109,6 @@ class TransitTimeAccumulator(EventAccumulator):
         self.durations.add(arrived[known], lasted[known], ids[known])
         since[ids] = arrived
         plane[ids] += 1
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return super().state() | pack(velocity=self.velocity)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        super().restore(state)
-        self.velocity.restore(unpack(state, "velocity"))
-
-    def pool(self, other: EventAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        assert isinstance(other, TransitTimeAccumulator)
-        super().pool(other)
-        self.velocity.pool(other.velocity)
 
     def result(self) -> Result:
         """The distribution of the times, the mean, and the velocity."""

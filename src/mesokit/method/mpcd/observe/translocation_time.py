@@ -12,7 +12,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, flow_sign
-from mesokit.method.mpcd.expected.molecules import KIND, molecule_of
+from mesokit.method.mpcd.expected.selection import KIND, molecule_of
 from mesokit.method.mpcd.observe.shared.events import (
     EventAccumulator,
     Words,
@@ -20,7 +20,7 @@ from mesokit.method.mpcd.observe.shared.events import (
     require_still,
 )
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -66,11 +66,8 @@ class TranslocationTime(Observable):
         """Number of the axis."""
         return flow_axis(case) if self.axis is None else case.box.index(self.axis)
 
-    def accumulator(self, case: Case) -> TranslocationTimeAccumulator:
-        """An empty memory for it."""
-        return TranslocationTimeAccumulator(self, case)
 
-
+@accumulator_of(TranslocationTime)
 class TranslocationTimeAccumulator(EventAccumulator):
     """Where the first and the last bead of each molecule are, and since when it is in a plane.
 
@@ -80,7 +77,6 @@ class TranslocationTimeAccumulator(EventAccumulator):
     """
 
     def __init__(self, observable: TranslocationTime, case: Case) -> None:
-        observable.check(case)
         words = Words(
             "translocation-time", observable.label, "translocation time", "translocations"
         )
@@ -92,7 +88,6 @@ class TranslocationTimeAccumulator(EventAccumulator):
         self.failed = 0  # in pooled runs
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         x = self.sign * self.each(fluid)[:, :, self.axis] - self.position
         front, back, time = x.max(axis=1), x.min(axis=1), float(fluid.time)
         self.samples_here += 1
@@ -134,7 +129,6 @@ class TranslocationTimeAccumulator(EventAccumulator):
         return bool(through.any() or returned.any())
 
     def pool(self, other: EventAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         assert isinstance(other, TranslocationTimeAccumulator)
         super().pool(other)
         self.failed += other.in_vain

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, tag
@@ -12,26 +13,62 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     free_bond,
     modes_of,
-    molecule_of,
     rouse_note,
     rouse_times_of,
     without_bonds,
 )
+from mesokit.method.mpcd.expected.selection import molecule_of
 from mesokit.method.mpcd.molecule import FLUID
-from mesokit.method.mpcd.observe.shared.bonded_decay import BondedLaw, fit_bonded
 from mesokit.method.mpcd.observe.shared.decay import fit_curve, largest_error, normalised
 from mesokit.method.mpcd.observe.shared.modes import (
     SHOWN,
-    Array,
     Modes,
     ModesAccumulator,
     transverse_units,
 )
 from mesokit.observe.shared.fitted import fitted_number
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.estimate import Estimate
+from mesokit.seam.observable import accumulator_of
+from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
+    pass
+
+STEPS = 400  # of the law: its error is far below that of any fit
+
+
+class BondedLaw(NamedTuple):
+    """Velocity modes of a fluid of molecules, but for the viscosity and the slowest time."""
+
+    wavenumber: float
+    elasticity: float
+    molecule: theory.GaussianMolecule
+
+    def __call__(self, time: Array, viscosity: float, mode_time: float) -> Array:
+        """The correlation (n,)."""
+        molecule = self.molecule._replace(mode_time=mode_time)
+        return theory.transverse_correlation_finite_k(
+            self.wavenumber, time, viscosity, self.elasticity, molecule, STEPS
+        )
+
+
+def fit_bonded(
+    time: Array, curve: Estimate, law: BondedLaw, start: tuple[float, float], use: NDArray[np.bool_]
+) -> Estimate | None:
+    """Logarithms of the viscosity and of the slowest mode time (2,), by least squares; None where
+    there is no fit.
+
+    Lags weigh alike, as in `fit_curve`: what each block of time adds to every lag is carried
+    through the linearised fit, so that errors know how lags and samples are correlated.
+    """
+
+    def model(t: Array, log_viscosity: float, log_time: float) -> Array:
+        # a search may stray far: keep it where the law has a meaning
+        nu, tau = np.exp(np.clip([log_viscosity, log_time], -12.0, 16.0))
+        return law(t, float(nu), float(tau))
+
+    return fit_curve(time, curve, model, list(np.log(start)), use)
+
 
 LOWEST = (0.5, 0.2)  # of the correlation, that the fit looks at: later lags add little but noise
 FEWEST = 4  # lags; the lower limit serves where the sampling is too coarse for the upper one
@@ -49,16 +86,13 @@ class TransverseModes(Modes):
 
     quantity: Literal["transverse-modes"] = tag("transverse-modes")
 
-    def accumulator(self, case: Case) -> TransverseModesAccumulator:
-        """An empty memory for it."""
-        return TransverseModesAccumulator(self, case)
-
 
 def decaying(time: Array, rate: float, amplitude: float) -> Array:
     """An exponential."""
     return np.asarray(amplitude * np.exp(-rate * time))
 
 
+@accumulator_of(TransverseModes)
 class TransverseModesAccumulator(ModesAccumulator):
     """Correlators of the polarisations across each wave vector."""
 

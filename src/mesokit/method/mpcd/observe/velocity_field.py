@@ -11,6 +11,7 @@ from mesokit.case.component import component, tag
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.field import Array, Field, FieldAccumulator
 from mesokit.seam.estimate import Estimate, of_ratio, per_block
+from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
@@ -28,11 +29,8 @@ class VelocityField(Field):
     quantity: Literal["velocity-field"] = tag("velocity-field")
     asks_transport: ClassVar[bool] = True
 
-    def accumulator(self, case: Case) -> VelocityFieldAccumulator:
-        """An empty memory for it."""
-        return VelocityFieldAccumulator(self, case)
 
-
+@accumulator_of(VelocityField)
 class VelocityFieldAccumulator(FieldAccumulator):
     """Mass and momentum of each bin."""
 

@@ -18,7 +18,7 @@ from mesokit.geometry.solids.solids import Solids, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, fit, of_mean, of_ratio
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -76,10 +76,6 @@ class Wake(Observable):
             return solids.names.index(self.solid)
         solid = [not isinstance(case.walls[wall], Plates) for wall in solids.walls]
         return next((i for i, stands in enumerate(solid) if stands), None)
-
-    def accumulator(self, case: Case) -> WakeAccumulator:
-        """An empty memory for it."""
-        return WakeAccumulator(self, case)
 
 
 class Standing:
@@ -139,13 +135,13 @@ def _fluid_until(solids: Solids, start: Array, axis: int, sign: float) -> float:
     return float(away[stops[0] + 1] if len(stops) else away[-1])
 
 
+@accumulator_of(Wake)
 class WakeAccumulator(BlockAccumulator):
     """Momentum and mass in the bins of the strip, and the momentum of the whole fluid."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "whole")
 
     def __init__(self, observable: Wake, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.body = Standing(observable, case)
         reach = min(observable.reach or 5 * self.body.size, self.body.room)
@@ -158,7 +154,6 @@ class WakeAccumulator(BlockAccumulator):
         self.blocks, self.whole = Blocks((2, bins)), Blocks()
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         mass = self.case.fluid.mass
         units = [math.sqrt(mass * self.case.fluid.kT), mass]
         self.blocks.add(fluid.sums_of_particles(self.behind, len(self.centres), units))

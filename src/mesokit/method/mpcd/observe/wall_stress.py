@@ -16,7 +16,7 @@ from mesokit.method.mpcd.expected.molecules import spring_of
 from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -55,18 +55,14 @@ class WallStress(Observable):
             )
         require_counted(case, self.quantity)
 
-    def accumulator(self, case: Case) -> WallStressAccumulator:
-        """An empty memory for it."""
-        return WallStressAccumulator(self, case)
 
-
+@accumulator_of(WallStress)
 class WallStressAccumulator(BlockAccumulator):
     """Mean force per area since the sample before."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "walls")
 
     def __init__(self, observable: WallStress, case: Case) -> None:
-        observable.check(case)
         self.case, self.name = case, observable.label
         plates: Any = case.walls[0]
         self.axis = AXES.index(plates.axis)
@@ -76,7 +72,6 @@ class WallStressAccumulator(BlockAccumulator):
         self.blocks = Blocks((2, d))
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         taken, steps = self.walls.take(fluid)
         if steps:
             momentum = taken[:, : self.case.box.dimension]

@@ -1,7 +1,5 @@
 """Molecules whose bonds are a list: dendrimers, networks, whatever hangs together."""
 
-from __future__ import annotations
-
 import functools
 from pathlib import Path
 
@@ -89,12 +87,10 @@ class FreeMolecule(Molecule):
 
     @property
     def bonds(self) -> Links:
-        """Pairs of beads that are linked."""
         return self.linked
 
     @property
     def angles(self) -> Links:
-        """Triples of beads, the second of which two bonds share."""
         return self.bent
 
     @property

@@ -1,7 +1,5 @@
 """One kind of solute, and what acts between two kinds."""
 
-from __future__ import annotations
-
 from mesokit.case.component import FileName, component, param
 from mesokit.case.describe.hints import Many
 from mesokit.method.mpcd import topology as links

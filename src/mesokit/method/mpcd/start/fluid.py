@@ -1,4 +1,10 @@
-"""How a fluid starts: the first positions and velocities of its particles, made piece by piece."""
+"""How a fluid starts: the first positions and velocities of its particles, made piece by piece.
+
+Solutes that act on the fluid by a potential have it about them as in equilibrium. An ideal gas has
+the density exp(-U/kT) about beads at rest: so a particle that was put near a bead stays with that
+chance, and is put elsewhere otherwise. Of a well it knows nothing: there the fluid starts as dense
+as far away.
+"""
 
 from __future__ import annotations
 
@@ -7,18 +13,93 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.errors import RunError
 from mesokit.geometry.solids.contact import MARGIN
-from mesokit.method.mpcd.start.around_beads import out_of_beads
-from mesokit.method.mpcd.start.conformation import connected, drawn
+from mesokit.method.mpcd.start.arrays import OfFirst, rows_of
+from mesokit.method.mpcd.start.conformation import connected, drawn, nearest_of
 from mesokit.method.mpcd.start.draws import Draws
-from mesokit.method.mpcd.start.of_first import OfFirst, rows_of
+from mesokit.method.mpcd.start.growth import grown
 from mesokit.method.mpcd.start.room import periods, stays_out
-from mesokit.method.mpcd.start.solutes import first_beads
+from mesokit.potential.protocol import Pair
+from mesokit.potential.thermal import energies
 from mesokit.scalar.fixed_point import added_halves, halves
-from mesokit.scalar.random import INITIAL_POSITION, INITIAL_VELOCITY
+from mesokit.scalar.random import FIRST_BEAD, INITIAL_POSITION, INITIAL_VELOCITY
 
 if TYPE_CHECKING:
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+    from mesokit.method.mpcd.solutes import Solutes
+
+FIRST_AGAIN = 2**20  # draws of this number and on are of those that were put elsewhere
+TRIES = 1000
+
+
+def out_of_beads(numbers: Numbers, ids: NDArray[np.int64], places: Floats, beads: Floats) -> Floats:
+    """Places (n, d) of particles with these numbers, those that beads push away drawn again.
+
+    Raises RunError where beads leave no room.
+    """
+    solutes = numbers.case.solutes
+    if solutes is None or solutes.solvent_pair is None or not len(places):
+        return places
+    random = Draws(numbers.case.run.seed, INITIAL_POSITION, ids, FIRST_AGAIN)
+    left, kT = np.arange(len(places)), numbers.case.fluid.kT
+    for _ in range(TRIES):
+        energy = _energy(numbers, places[left], beads, solutes.solvent_pair)
+        repelled = random.units(1)[:, 0] >= np.exp(-np.clip(energy / kT, 0.0, None))
+        if numbers.solids is not None and numbers.slit is None:
+            repelled |= numbers.solids.distance(places[left]) < MARGIN
+        if not repelled.any():
+            return places
+        left, random = left[repelled], random.of(repelled)
+        places[left] = random.units(numbers.dimension) * numbers.box
+    raise RunError("solutes.solvent_pair: the beads leave no room to the fluid; expected fewer")
+
+
+def _energy(numbers: Numbers, places: Floats, beads: Floats, pair: Pair) -> Floats:
+    """Of each place, by all beads near it."""
+    from scipy.spatial import cKDTree
+
+    period = periods(numbers)
+    boxes = np.where(np.isfinite(period), period, 0.0)
+    inside = [
+        np.where(boxes > 0.0, x % np.where(boxes > 0.0, boxes, 1.0), x) for x in (places, beads)
+    ]
+    trees = [cKDTree(x, boxsize=boxes) for x in inside]
+    near = trees[1].sparse_distance_matrix(trees[0], pair.reach, output_type="ndarray")
+    near = near[np.lexsort((near["i"], near["j"]))]  # one order, whoever else is asked for
+    total = np.zeros(len(places))
+    np.add.at(total, near["j"], energies((pair.kernel(),), near["v"]))
+    return total
+
+
+def first_beads(
+    numbers: Numbers, solutes: Solutes, places: Any, velocities: Any, fluid_is_drawn: bool
+) -> tuple[Any, Any, Any]:
+    """Places and velocities (beads, d), drawn where there are none, and the drift (d,) to take off.
+
+    Beads are grown where there is room, with thermal velocities. The fluid, if its velocities are
+    drawn too, takes part of their momentum, so that the whole is at rest.
+    """
+    case, drift = numbers.case, np.zeros(numbers.dimension)
+    kT = case.fluid.kT
+    if places is None:
+        clear = nearest_of(solutes.wall.kernel(), kT) if solutes.wall else MARGIN
+        room = stays_out(numbers, clear)
+        places = grown(solutes, kT, numbers.box, periods(numbers), case.run.seed, room)
+    if velocities is None:
+        ids = np.arange(FIRST_BEAD, FIRST_BEAD + solutes.beads)
+        random = Draws(case.run.seed, INITIAL_VELOCITY, ids)
+        mass = solutes.mass_per_bead()
+        velocities = random.normals(numbers.dimension)
+        velocities *= np.sqrt(kT / np.asarray(mass))[..., None]
+        if fluid_is_drawn:
+            one = isinstance(mass, float)
+            momentum = mass * velocities.sum(axis=0) if one else mass @ velocities
+            drift = momentum / (solutes.total_mass + numbers.total_mass)
+            velocities -= drift
+            velocities[:, 0] += case.box.first_rate * (places[:, 1] - 0.5 * numbers.box[1])
+    return places, velocities, drift
+
 
 Floats = NDArray[np.float64]
 Ids = NDArray[np.int64]

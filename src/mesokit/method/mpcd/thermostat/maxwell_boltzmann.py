@@ -25,7 +25,6 @@ class MaxwellBoltzmann(Thermostat):
     in_theory: ClassVar[Named | None] = "maxwell-boltzmann"
 
     def kernel(self, kT: float, floor: float) -> Canonical:
-        """Parameters for the scalar functions below; an energy below the floor is noise."""
         return Canonical(kT, floor)
 
 

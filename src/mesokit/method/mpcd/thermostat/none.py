@@ -21,7 +21,6 @@ class NoThermostat(Thermostat):
     in_theory: ClassVar[Named | None] = "none"
 
     def kernel(self, kT: float, floor: float) -> NoRescaling:
-        """Parameters for the scalar functions below; an energy below the floor is noise."""
         return NoRescaling(kT)
 
 

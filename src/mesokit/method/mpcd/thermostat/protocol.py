@@ -5,8 +5,6 @@ mass, and for the rules +a to its rotation too. The first argument is the thermo
 parameters; its class picks the implementation.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar

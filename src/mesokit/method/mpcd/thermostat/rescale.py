@@ -22,7 +22,6 @@ class Rescale(Thermostat):
     in_theory: ClassVar[Named | None] = "rescale"
 
     def kernel(self, kT: float, floor: float) -> Isokinetic:
-        """Parameters for the scalar functions below; an energy below the floor is noise."""
         return Isokinetic(kT, floor)
 
 

@@ -1,7 +1,5 @@
 """Random numbers of spheres: by seed, turn, purpose and particle number."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

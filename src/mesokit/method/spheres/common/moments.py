@@ -1,21 +1,19 @@
 """Sums over spheres in equal bins of the box."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from mesokit.seam.engine import Array, RunningSpheres
+
+Floats = NDArray[np.float64]
 
 
 def moments(
-    spheres: Any,
+    spheres: RunningSpheres,
     axes: tuple[int, ...],
     bins: tuple[int, ...],
     ids: NDArray[np.int64] | None = None,
-) -> tuple[Array, Array, Array, Array]:
+) -> tuple[Floats, Floats, Floats, Floats]:
     """Number (*bins), mass (*bins), momentum (d, *bins) and sum of m v^2 (*bins) in equal bins over
     the whole box along `axes`, of some spheres (all unless said) of an engine."""
     number = np.array(bins)
@@ -24,7 +22,7 @@ def moments(
     at, size = np.ravel_multi_index(tuple(cell.T), bins), int(number.prod())
     v, m = spheres.velocities(ids), spheres.masses(ids)
 
-    def summed(values: Array) -> Array:
+    def summed(values: Array) -> Floats:
         return np.asarray(np.bincount(at, values, size).reshape(bins), float)
 
     momentum = np.stack([summed(m * column) for column in v.T])

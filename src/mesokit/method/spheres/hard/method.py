@@ -16,15 +16,17 @@ from mesokit.method.spheres.common.start.first_state import (
     starts,
 )
 from mesokit.method.spheres.hard.checks import check
-from mesokit.method.spheres.hard.cooling import HardCooling
-from mesokit.method.spheres.hard.displacement import Displacement
 from mesokit.method.spheres.hard.engine.engine import EventDriven
-from mesokit.method.spheres.hard.equilibrium import equilibrium
-from mesokit.method.spheres.hard.neighbours import Neighbours
+from mesokit.method.spheres.hard.expected import (
+    Displacement,
+    EnskogMemory,
+    HardCooling,
+    Neighbours,
+    equilibrium,
+)
 from mesokit.method.spheres.hard.observe import MeanSquareDisplacement
 from mesokit.method.spheres.hard.section import KEYS, Sections
 from mesokit.method.spheres.hard.summary import summary
-from mesokit.method.spheres.hard.velocity_memory import EnskogMemory
 from mesokit.seam.method import Columns, Enclosure, InitialState, Method
 
 if TYPE_CHECKING:
@@ -46,7 +48,7 @@ def columns(case: Case) -> Columns:
     """Energies and numbers of collisions, of which the log of a run may tell."""
     names = ("translation", "rotation", "potential", "collisions", "wall collisions")
 
-    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+    def read(engine: EventDriven, wanted: Collection[str]) -> dict[str, float]:
         pairs, walls, _ = engine.collisions
         known = {**engine.energies(), "collisions": pairs, "wall collisions": walls}
         return {name: float(known[name]) for name in wanted}

@@ -1,7 +1,5 @@
 """The sections of a case of event-driven dynamics."""
 
-from __future__ import annotations
-
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
 from mesokit.geometry.shape import Wall

@@ -18,10 +18,8 @@ from mesokit.method.spheres.common.start.first_state import (
 )
 from mesokit.method.spheres.common.velocity_memory import VelocityMemory
 from mesokit.method.spheres.soft.checks import check
-from mesokit.method.spheres.soft.cooling import SoftCooling
-from mesokit.method.spheres.soft.displacement import Displacement
 from mesokit.method.spheres.soft.engine.engine import SoftEngine
-from mesokit.method.spheres.soft.equilibrium import equilibrium
+from mesokit.method.spheres.soft.expected import Displacement, SoftCooling, equilibrium
 from mesokit.method.spheres.soft.first_speeds import with_speed
 from mesokit.method.spheres.soft.observe import MeanSquareDisplacement
 from mesokit.method.spheres.soft.scales import timestep_of
@@ -47,7 +45,7 @@ def columns(case: Case) -> Columns:
     """Energies, of which the log of a run may tell."""
     names = ("translation", "rotation", "potential", "contact")
 
-    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+    def read(engine: SoftEngine, wanted: Collection[str]) -> dict[str, float]:
         known = engine.energies()
         return {name: float(known[name]) for name in wanted}
 

@@ -1,7 +1,5 @@
 """The sections of a case of soft spheres."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection
 from typing import ClassVar

@@ -1,7 +1,5 @@
 """Bonds that are longer than they can be: noted where they are found, refused after the steps."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +23,8 @@ from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
     ONE_PARTICLE,
     WithCount,
 )
-from mesokit.method.mpcd.engine.measure.by_pieces import ByPieces, Some, Terms
-from mesokit.method.mpcd.engine.measure.readings import Moments, Readings
+from mesokit.method.mpcd.engine.measure.by_pieces import ByPieces
+from mesokit.method.mpcd.engine.measure.readings import Readings
 from mesokit.method.mpcd.engine.pieces import Piece, of_state, pieces, require_finite
 from mesokit.method.mpcd.molecule import Springs
 from mesokit.scalar.system import TICK
@@ -31,6 +32,31 @@ from mesokit.statistics import Tally
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def _read(method: Callable[Concatenate[Readings, P], T]) -> Callable[Concatenate[CPU, P], T]:
+    """A method of the readings, as one of the engine."""
+
+    @functools.wraps(method)
+    def read(engine: CPU, *given: P.args, **more: P.kwargs) -> T:
+        return method(engine.readings, *given, **more)
+
+    return read
+
+
+def _read_by_pieces(
+    method: Callable[Concatenate[ByPieces, P], T],
+) -> Callable[Concatenate[CPU, P], T]:
+    """A method of the readings by pieces, as one of the engine."""
+
+    @functools.wraps(method)
+    def read(engine: CPU, *given: P.args, **more: P.kwargs) -> T:
+        return method(ByPieces(engine.readings), *given, **more)
+
+    return read
 
 
 class CPU:
@@ -246,76 +272,20 @@ class CPU:
 
     # --- what observables ask -------------------------------------------------------------------
 
-    def totals(self) -> tuple[int, Floats, float]:
-        """Number of particles, momentum (d,) and kinetic energy, beads of solutes included."""
-        return self.readings.totals()
-
-    def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
-        """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
-        return self.readings.moments(axes, bins)
-
-    def modes(
-        self, wavevectors: NDArray, first: int = 0, last: int | None = None
-    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""
-        return self.readings.modes(wavevectors, first, last)
-
-    def sums_of_particles(
-        self,
-        of: Callable[[Some], Terms],
-        bins: int,
-        units: Sequence[float],
-        first: int = 0,
-        last: int | None = None,
-    ) -> Floats:
-        """Sums (terms, bins) of what `of` finds of some particles at a time."""
-        return ByPieces(self.readings).sums_of_particles(of, bins, units, first, last)
-
-    def sums_of_bonds(
-        self,
-        of: Callable[[NDArray[np.int64], Floats], Terms],
-        bins: int,
-        units: Sequence[float],
-        kind: slice,
-    ) -> Floats:
-        """The same of bonds, by their numbers and vectors."""
-        return ByPieces(self.readings).sums_of_bonds(of, bins, units, kind)
-
-    def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
-        """Positions (n, d) by particle number, in the box or as if it had no bounds."""
-        return self.readings.positions(ids, unwrapped)
-
-    def whole_positions(self, ids: NDArray | None = None) -> Floats:
-        """Positions (n, d) with all beads of a molecule next to its first."""
-        return self.readings.whole_positions(ids)
-
-    def velocities(self, ids: NDArray | None = None) -> Floats:
-        """Velocities (n, d) by particle number."""
-        return self.readings.velocities(ids)
-
-    def images(self, ids: NDArray | None = None) -> NDArray[np.int32]:
-        """How many times each particle left the box along each axis (n, d)."""
-        return self.readings.images(ids)
-
-    def masses(self, ids: NDArray | None = None) -> Floats:
-        """Masses (n,) by particle number."""
-        return self.readings.masses(ids)
-
-    def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
-        """Kind of each particle (n,): of the fluid, then of the solutes."""
-        return self.readings.species(ids)
-
-    def bonds(self) -> NDArray[np.int64]:
-        """Particle numbers (bonds, 2) of all pairs that are linked."""
-        return self.readings.bonds()
-
-    def bond_vectors(self) -> Floats:
-        """From the first to the second particle of each bond (bonds, d)."""
-        return self.readings.bond_vectors()
-
-    def potential_energy(self) -> float:
-        """Of all bonds, angles and pairs of beads, and of solutes near walls."""
-        return ByPieces(self.readings).potential_energy()
+    totals = _read(Readings.totals)
+    moments = _read(Readings.moments)
+    modes = _read(Readings.modes)
+    positions = _read(Readings.positions)
+    whole_positions = _read(Readings.whole_positions)
+    velocities = _read(Readings.velocities)
+    images = _read(Readings.images)
+    masses = _read(Readings.masses)
+    species = _read(Readings.species)
+    bonds = _read(Readings.bonds)
+    bond_vectors = _read(Readings.bond_vectors)
+    sums_of_particles = _read_by_pieces(ByPieces.sums_of_particles)
+    sums_of_bonds = _read_by_pieces(ByPieces.sums_of_bonds)
+    potential_energy = _read_by_pieces(ByPieces.potential_energy)
 
     @property
     def stress(self) -> dict[str, Floats]:

@@ -1,7 +1,5 @@
 """Particles that are made or read piece by piece are sent to the ranks of their blocks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The particles of one rank alone, for data that stay on their rank until they are written."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The state of all ranks as arrays that come piece by piece: no rank holds the whole."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Any
 

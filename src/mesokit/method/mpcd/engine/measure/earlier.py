@@ -1,7 +1,5 @@
 """The particles of a checkpoint, row by row, as readings of the fluid that wrote it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Readings of a fluid in memory, for observables."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple

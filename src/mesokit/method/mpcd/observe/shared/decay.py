@@ -1,7 +1,5 @@
 """Fits to the decay of a correlation function, with error bars that know how lags correlate."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

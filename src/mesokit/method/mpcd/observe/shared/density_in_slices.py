@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of, springs_of
+from mesokit.method.mpcd.expected.molecules import springs_of
+from mesokit.method.mpcd.expected.selection import Group, group_of, kind_of
 from mesokit.method.mpcd.expected.traps import held, trapped
 from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
 from mesokit.seam.engine import RunningFluid, Some, Terms

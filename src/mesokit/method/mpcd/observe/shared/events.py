@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import group_of
+from mesokit.method.mpcd.expected.selection import group_of
 from mesokit.method.mpcd.observe.shared.durations import Durations
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, State, pack, unpack
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -30,11 +30,13 @@ class Words(NamedTuple):
     events: str
 
 
-class EventAccumulator:
+class EventAccumulator(BlockAccumulator):
     """Followed molecules, their numbers from sample to sample, and the events that they had.
 
     `now` holds an array for each number that must be remembered; none before the first sample.
     """
+
+    memory: ClassVar[tuple[str, ...]] = ("durations",)
 
     def __init__(self, case: Case, words: Words, of: str, kind: int | str, molecules: int) -> None:
         self.case, self.words, self.name, self.kind = case, words, words.name, kind
@@ -61,20 +63,16 @@ class EventAccumulator:
         return r.reshape(*self.beads.shape, -1)
 
     def state(self) -> State:
-        """All it has to remember."""
-        return pack(durations=self.durations, samples=np.array(self.samples_here)) | {
-            f"now/{name}": array.copy() for name, array in self.now.items()
-        }
+        now = {f"now/{name}": array for name, array in self.now.items()}
+        return super().state() | pack(samples=self.samples_here, **now)
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.durations.restore(unpack(state, "durations"))
+        super().restore(state)
         self.samples_here = int(state["samples"])
         self.now = {name: np.array(array) for name, array in unpack(state, "now").items()}
 
     def pool(self, other: EventAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.durations.pool(other.durations)
+        super().pool(other)
         self.others += [(len(other.beads), other.samples_here), *other.others]
 
     def note(self) -> str:

@@ -73,7 +73,6 @@ class ModesAccumulator(ABC):
     """One correlator for each length of wave vector; `polarisations` (K, p, d) say what it sees."""
 
     def __init__(self, observable: Modes, case: Case) -> None:
-        observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         vectors = observable.vectors(case)
         self.wavevectors = 2 * np.pi * vectors / np.array(case.box.size, float)
@@ -92,18 +91,15 @@ class ModesAccumulator(ABC):
         """Unit vectors (p, d)."""
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         _, momentum = fluid.modes(self.wavevectors)
         amplitude = np.einsum("kpd,kd->kp", self.polarisations, momentum)
         for shell in self.shells:
             shell.correlator.add(amplitude[shell.members])
 
     def state(self) -> State:
-        """All it has to remember."""
         return pack(**{f"shell_{i}": shell.correlator for i, shell in enumerate(self.shells)})
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.shells = [
             shell._replace(correlator=MultipleTau.from_state(unpack(state, f"shell_{i}")))
             for i, shell in enumerate(self.shells)

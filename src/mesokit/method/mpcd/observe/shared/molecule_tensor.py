@@ -7,16 +7,14 @@ one sample over the root of their number.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.method.mpcd.expected.molecules import least_times_of
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
 from mesokit.observe.shared.over_molecules import OwnMeans
-from mesokit.seam.observable import BlockAccumulator, Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array
 from mesokit.statistics import Blocks
 
@@ -41,6 +39,9 @@ def kept(times: float) -> float:
 
 class MoleculeTensorAccumulator(TensorAccumulator):
     """Block averages of tensors of molecules, and how much these differ in one sample."""
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "scatter", "own", "number")
+    added: ClassVar[tuple[str, ...]] = ("runs",)
 
     def __init__(
         self,
@@ -75,24 +76,10 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         self.number = number
         self.scatter.add(np.concatenate([elements.reshape(len(traces), -1), traces[:, None]], 1))
 
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, scatter=self.scatter, own=self.own, number=self.number)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.scatter = Blocks.from_state(unpack(state, "scatter"))
-        self.own.restore(unpack(state, "own"))
-        self.number = int(state["number"])
-
     def pool(self, other: BlockAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         assert isinstance(other, MoleculeTensorAccumulator)
         super().pool(other)
-        self.scatter.pool(other.scatter)
-        self.own.pool(other.own)
-        self.number, self.runs = max(self.number, other.number), self.runs + other.runs
+        self.number = max(self.number, other.number)
 
     def weights(self, part: int) -> Array:
         """Part of the size that each normal mode has: the same of the bonds."""
@@ -150,7 +137,6 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         return np.sqrt(variance)
 
     def errors(self) -> Array:
-        """Standard errors (parts, d, d)."""
         found = self.blocks.error()
         if not self.blocks.count:
             return found

@@ -44,7 +44,6 @@ class ShellAccumulator(BlockAccumulator):
         """Velocities (directions, n), the first d of them along directions at right angles."""
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
         self.blocks.add(fluid.sums_of_particles(self.terms, self.bins, self.units))
 
     @property

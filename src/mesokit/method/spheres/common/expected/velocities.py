@@ -17,6 +17,7 @@ from mesokit.method.spheres.common.made import made
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningSpheres
 
 Array = NDArray[np.float64]
 FEW = 0.01  # of the collisions, made elastic by a contact time: they do not change the law
@@ -85,7 +86,7 @@ class VelocitiesOfSpheres:
         self.cumulant, self.law = cumulant(find, case)
         self.known = (not math.isnan(self.cumulant),) * 2
 
-    def numbers(self, spheres: Any) -> Array:
+    def numbers(self, spheres: RunningSpheres) -> Array:
         """Velocities (n, d) over sqrt(kT/m), with the temperature of this moment."""
         v, mass = spheres.velocities(self.group), spheres.masses(self.group)
         u = (v - mass @ v / mass.sum()) * np.sqrt(mass)[:, None]

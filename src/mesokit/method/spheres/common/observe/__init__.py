@@ -1,7 +1,5 @@
 """What is measured of spheres and disks of both methods. A new observable is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.observe import Observable
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement

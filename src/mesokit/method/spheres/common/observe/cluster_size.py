@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, param, tag
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -40,11 +40,8 @@ class ClusterSize(Observable):
         gt=0,
     )
 
-    def accumulator(self, case: Case) -> ClusterSizeAccumulator:
-        """An empty memory for it."""
-        return ClusterSizeAccumulator(self, case)
 
-
+@accumulator_of(ClusterSize)
 class ClusterSizeAccumulator(BlockAccumulator):
     """Block averages of the shares, of the mean and of the largest."""
 
@@ -58,7 +55,6 @@ class ClusterSizeAccumulator(BlockAccumulator):
         self.repeats = np.array([k not in closed for k in range(case.box.dimension)])
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         period = np.where(self.repeats, spheres.box, 0.0)  # 0: this axis does not repeat
         sizes = cluster_sizes(spheres.positions(), spheres.diameters(), period, self.gap)
         place = np.frexp(sizes.astype(float))[1] - 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, Self
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.method.spheres.common.observe.samples import Samples
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -52,13 +52,12 @@ class GranularTemperature(Observable):
     of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
-    def accumulator(self, case: Case) -> GranularTemperatureAccumulator:
-        """An empty memory for it."""
-        return GranularTemperatureAccumulator(self, case)
 
-
+@accumulator_of(GranularTemperature)
 class GranularTemperatureAccumulator(Samples):
     """The series in time."""
+
+    added: ClassVar[tuple[str, ...]] = ("samples", "runs")
 
     def __init__(self, observable: GranularTemperature, case: Case) -> None:
         self.name, self.case = observable.label, case
@@ -69,7 +68,6 @@ class GranularTemperatureAccumulator(Samples):
         self.runs = 1
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         n, d = spheres.n, spheres.dimension
         energies, (_, momentum, _) = spheres.energies(), spheres.totals()
         masses = spheres.masses()
@@ -79,11 +77,6 @@ class GranularTemperatureAccumulator(Samples):
         pairs = getattr(spheres, "collisions", (math.nan,))[0]  # soft ones do not count them
         self.series.add(spheres.time, [motion, turning, 2 * pairs / n])
         self.samples += 1
-
-    def pool(self, other: Self) -> None:
-        """Take in an independent run of the same case, only to read."""
-        super().pool(other)
-        self.runs += other.runs
 
     def result(self) -> Result:
         """The series; a sample has no error bar: nan."""

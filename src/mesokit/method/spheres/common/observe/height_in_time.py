@@ -12,7 +12,7 @@ from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.observe.samples import Samples
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import Observable
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -39,23 +39,18 @@ class HeightInTime(Observable):
         if len(along) != 1 or int(along[0]) not in method_of(case).enclosure.closed_axes(case):
             raise CaseError("height-in-time: expected gravity along one axis, which plates close")
 
-    def accumulator(self, case: Case) -> HeightInTimeAccumulator:
-        """An empty memory for it."""
-        return HeightInTimeAccumulator(self, case)
 
-
+@accumulator_of(HeightInTime)
 class HeightInTimeAccumulator(Samples):
     """The series in time."""
 
     def __init__(self, observable: HeightInTime, case: Case) -> None:
-        observable.check(case)
         self.name, self.case = observable.label, case
         self.axis = _axis(case)
         self.gravity = float(case.spheres.gravity[self.axis])
         super().__init__(2)  # height, velocity upwards
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         masses, up = spheres.masses(), -math.copysign(1.0, self.gravity)
         place = spheres.positions(unwrapped=True)[:, self.axis]
         height = place if up > 0 else self.case.box.size[self.axis] - place

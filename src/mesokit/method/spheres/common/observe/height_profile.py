@@ -12,7 +12,7 @@ from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -44,16 +44,12 @@ class HeightProfile(Observable):
         if len(along) != 1 or int(along[0]) not in closed:
             raise CaseError("height-profile: expected gravity along one axis, which plates close")
 
-    def accumulator(self, case: Case) -> HeightProfileAccumulator:
-        """An empty memory for it."""
-        return HeightProfileAccumulator(self, case)
 
-
+@accumulator_of(HeightProfile)
 class HeightProfileAccumulator(BlockAccumulator):
     """Block averages of the layers, of the mean height and of the temperature."""
 
     def __init__(self, observable: HeightProfile, case: Case) -> None:
-        observable.check(case)
         self.name, self.case = observable.label, case
         self.axis = int(np.flatnonzero(case.spheres.gravity)[0])
         self.gravity = float(case.spheres.gravity[self.axis])
@@ -62,7 +58,6 @@ class HeightProfileAccumulator(BlockAccumulator):
         self.blocks = Blocks((observable.bins + 2,))
 
     def observe(self, spheres: RunningSpheres) -> None:
-        """Take one sample."""
         place = spheres.positions(unwrapped=True)[:, self.axis]
         height = place if self.gravity < 0 else self.depth - place
         kT = 2 * spheres.totals()[2] / (spheres.dimension * spheres.n)

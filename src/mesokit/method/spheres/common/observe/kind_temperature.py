@@ -8,7 +8,7 @@ import numpy as np
 
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -36,16 +36,12 @@ class KindTemperature(Observable):
         if len(counts) < 2 or min(counts) < 1:
             raise CaseError("kind-temperature: expected two kinds of spheres or more")
 
-    def accumulator(self, case: Case) -> KindTemperatureAccumulator:
-        """An empty memory for it."""
-        return KindTemperatureAccumulator(self, case)
 
-
+@accumulator_of(KindTemperature)
 class KindTemperatureAccumulator(BlockAccumulator):
     """Block averages of the ratios."""
 
     def __init__(self, observable: KindTemperature, case: Case) -> None:
-        observable.check(case)
         self.name, self.case = observable.label, case
         counts = case.spheres.counts(case.box)
         self.kinds = np.repeat(np.arange(len(counts)), counts)  # spheres come kind after kind

@@ -9,7 +9,7 @@ import numpy as np
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -39,16 +39,12 @@ class VelocityCumulant(Observable):
         if case.particles < 3:
             raise CaseError(f"velocity-cumulant: {case.particles} spheres; expected 3 at least")
 
-    def accumulator(self, case: Case) -> VelocityCumulantAccumulator:
-        """An empty memory for it."""
-        return VelocityCumulantAccumulator(self, case)
 
-
+@accumulator_of(VelocityCumulant)
 class VelocityCumulantAccumulator(BlockAccumulator):
     """Block averages of a_2."""
 
     def __init__(self, observable: VelocityCumulant, case: Case) -> None:
-        observable.check(case)
         self.name, self.blocks = observable.label, Blocks((1,))
         self.theory = method_of(case).expected["velocity-cumulant"](case, observable)
 

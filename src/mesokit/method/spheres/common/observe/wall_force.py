@@ -9,7 +9,7 @@ import numpy as np
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.seam.estimate import Array, Estimate, of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -48,11 +48,8 @@ class WallForce(Observable):
         if not case.walls:
             raise CaseError("wall-force needs a [[wall]]")
 
-    def accumulator(self, case: Case) -> WallForceAccumulator:
-        """An empty memory for it."""
-        return WallForceAccumulator(self, case)
 
-
+@accumulator_of(WallForce)
 class WallForceAccumulator(BlockAccumulator):
     """Block averages of what surfaces take between two samples, of the mass of all spheres, and of
     the momentum that they gain meanwhile."""
@@ -60,7 +57,6 @@ class WallForceAccumulator(BlockAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
     def __init__(self, observable: WallForce, case: Case) -> None:
-        observable.check(case)
         self.name, self.case = observable.label, case
         self.names = surface_names(case)
         self.taken, d = len(self.names) * case.box.dimension, case.box.dimension

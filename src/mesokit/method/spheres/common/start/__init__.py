@@ -1,7 +1,5 @@
 """Where spheres start from. A new start is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.method.spheres.common.start.protocol import Placed, SphereStart
 

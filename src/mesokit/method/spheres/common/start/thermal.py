@@ -1,7 +1,5 @@
 """Velocities and spins in equilibrium."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from mesokit.method.spheres.common.draws import normal_rows

@@ -1,7 +1,5 @@
 """What two hard spheres do to one another. A new rule is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.method.spheres.hard.collision.protocol import SphereCollision
 

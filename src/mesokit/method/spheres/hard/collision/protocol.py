@@ -1,14 +1,31 @@
 """What a collision rule of hard spheres is."""
 
-from __future__ import annotations
-
+import math
 from abc import ABC, abstractmethod
 from typing import Any
 
 from mesokit.case.component import component, option
 from mesokit.case.registry import family
-from mesokit.method.spheres.hard.engine.touching import touching
-from mesokit.scalar.jit import generic
+from mesokit.scalar.jit import generic, scalar
+from mesokit.scalar.vector import dot
+
+
+@scalar
+def touching(r, v, reach, growth):
+    """The time after which |r + v t| = reach + growth t from above, infinite if never.
+
+    Whether they meet is asked last, of numbers that are all there: a processor does many pairs at
+    once as long as it need not guess.
+    """
+    a = dot(v, v) - growth * growth
+    b = dot(r, v) - reach * growth
+    c = dot(r, r) - reach * reach
+    square = b * b - a * c
+    root = math.sqrt(max(square, 0.0))
+    if growth != 0.0 and b >= 0.0:
+        return (b + root) / -a if c > 0.0 and a < 0.0 and square >= 0.0 else math.inf
+    time = max(c, 0.0) / (root - b)
+    return time if (b < 0.0) & (square >= 0.0) else math.inf
 
 
 @family("collision rule of hard spheres", "rule", "mesokit.sphere_collision")

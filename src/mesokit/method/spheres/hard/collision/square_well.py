@@ -11,8 +11,8 @@ from mesokit.method.spheres.hard.collision.protocol import (
     next_contact,
     restitution,
     step_of_energy,
+    touching,
 )
-from mesokit.method.spheres.hard.engine.touching import touching
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
 
@@ -54,7 +54,6 @@ class SquareWell(SphereCollision):
 
     @property
     def energy_within(self) -> float:
-        """Potential energy of two spheres nearer than `reach`."""
         return -self.depth
 
     def kernel(self) -> Well:

@@ -33,7 +33,6 @@ class Viscoelastic(SphereCollision):
 
     @property
     def elastic(self) -> bool:
-        """Whether it keeps energy."""
         return False
 
     def kernel(self) -> Falling:

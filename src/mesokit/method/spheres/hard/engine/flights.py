@@ -3,8 +3,6 @@
 Else `Tally.flights` is `()`, and nothing of this is compiled.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

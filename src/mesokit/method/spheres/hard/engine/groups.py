@@ -4,8 +4,6 @@ Spheres lie in memory in an order of their own (places); `number` is the particl
 All times are since the start of the window in which the run is.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 # columns of `Spheres.state`, a row of 64 bytes for each

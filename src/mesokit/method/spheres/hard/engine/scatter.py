@@ -1,7 +1,5 @@
 """Spheres at random places, one after the other, none on another (random sequential addition)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

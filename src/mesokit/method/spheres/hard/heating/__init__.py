@@ -1,7 +1,5 @@
 """What puts energy into hard spheres, or takes it out. A new one is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.method.spheres.hard.heating.protocol import Heating
 

@@ -1,7 +1,5 @@
 """Collisions with a bath."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 
@@ -28,7 +26,6 @@ class Andersen(Heating):
         return self.kT
 
     def act(self, motion: Motion, interval: float) -> None:
-        """Change the velocities, after so much time."""
         n, d = motion.velocities.shape
         chance = uniform_rows(motion.seed, motion.turn, CHANCE, n)
         chosen = chance < -math.expm1(-self.rate * interval)

@@ -1,7 +1,5 @@
 """Random kicks to all spheres."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np
@@ -30,7 +28,6 @@ class Kicks(Heating):
         return True
 
     def act(self, motion: Motion, interval: float) -> None:
-        """Change the velocities, after so much time."""
         n, d = motion.velocities.shape
         kicks = normal_rows(motion.seed, motion.turn, PURPOSE, n, d)
         kicks *= np.sqrt(2 * self.power * interval / (d * motion.masses))[:, None]

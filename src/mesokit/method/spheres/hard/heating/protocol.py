@@ -1,7 +1,5 @@
 """What a source of energy is."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from typing import NamedTuple
 

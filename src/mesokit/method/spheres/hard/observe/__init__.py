@@ -1,7 +1,5 @@
 """What is measured of event-driven spheres alone. A new observable is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.method.spheres.common.observe import MeanSquareDisplacement, Observable
 

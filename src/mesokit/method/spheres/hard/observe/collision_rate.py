@@ -11,13 +11,13 @@ from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.method.spheres.common.expected.enskog import pair_rate, root_of_temperature
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
+    from mesokit.seam.engine import CollidingSpheres
 
 MANY = 25  # collisions, of which blocks know the error
 ENOUGH = 5  # to be expected, where none has been seen, for something to be compared
@@ -40,10 +40,6 @@ class CollisionRate(Observable):
     of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
-    def accumulator(self, case: Case) -> CollisionRateAccumulator:
-        """An empty memory for it."""
-        return CollisionRateAccumulator(self, case)
-
 
 class Few(NamedTuple):
     """What is known of the rate of rare collisions: the least error, theory, and why."""
@@ -53,6 +49,7 @@ class Few(NamedTuple):
     note: str = ""
 
 
+@accumulator_of(CollisionRate)
 class CollisionRateAccumulator(BlockAccumulator):
     """Block averages of what has happened between two samples."""
 
@@ -63,7 +60,7 @@ class CollisionRateAccumulator(BlockAccumulator):
         self.blocks = Blocks((5,))  # three rates, the root of the temperature, the mean speed
         self.before = np.full(6, np.nan)  # time, three counts, root of temperature, mean speed
 
-    def observe(self, spheres: RunningSpheres) -> None:
+    def observe(self, spheres: CollidingSpheres) -> None:
         """Take one sample: of what has happened since the last."""
         root = root_of_temperature(self.case, spheres.totals()[2])
         speed = float(np.linalg.norm(spheres.velocities(), axis=1).mean())

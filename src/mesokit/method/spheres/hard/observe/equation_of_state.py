@@ -12,13 +12,13 @@ from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.enskog import fluid_note, speed_factor
 from mesokit.seam.estimate import Estimate, of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
+    from mesokit.seam.engine import CollidingSpheres
 
 
 @component
@@ -45,23 +45,19 @@ class EquationOfState(Observable):
         if case.particles < 2:
             raise CaseError("equation-of-state: one sphere meets none; expected two or more")
 
-    def accumulator(self, case: Case) -> EquationOfStateAccumulator:
-        """An empty memory for it."""
-        return EquationOfStateAccumulator(self, case)
 
-
+@accumulator_of(EquationOfState)
 class EquationOfStateAccumulator(BlockAccumulator):
     """Block averages of what collisions do between two samples."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
     def __init__(self, observable: EquationOfState, case: Case) -> None:
-        observable.check(case)
         self.name, self.case, self.every = observable.label, case, observable.every
         self.blocks = Blocks((3,))  # virial and collisions per time, twice the kinetic energy
         self.before = np.full(3, np.nan)  # time, virial, collisions at the last sample
 
-    def observe(self, spheres: RunningSpheres) -> None:
+    def observe(self, spheres: CollidingSpheres) -> None:
         """Take one sample: of what has happened since the last."""
         now = np.array([spheres.time, spheres.virial, spheres.collisions[0]])
         if np.isfinite(self.before[0]) and now[0] > self.before[0]:

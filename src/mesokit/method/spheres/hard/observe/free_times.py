@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +14,13 @@ from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.enskog import fluid_note, pair_rate, root_of_temperature
 from mesokit.seam.estimate import of_mean, of_ratio
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
+    from mesokit.seam.engine import CollidingSpheres
 
 FINE = 256  # bins in which an engine counts
 DILUTE = 0.0025  # packing fraction above which the last partner is in the way of others for long
@@ -62,23 +62,21 @@ class FreeTimes(Observable):
                 f"of {LONG / rate:.3g} in time, {LONG:g} mean free times, not {passed:g}"
             )
 
-    def accumulator(self, case: Case) -> FreeTimesAccumulator:
-        """An empty memory for it."""
-        return FreeTimesAccumulator(self, case)
 
-
-class FreeTimesAccumulator:
+@accumulator_of(FreeTimes)
+class FreeTimesAccumulator(BlockAccumulator):
     """Block averages of the flights that ended between two samples."""
 
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "before", "edges")
+
     def __init__(self, observable: FreeTimes, case: Case) -> None:
-        observable.check(case)
         self.name, self.case, self.bins = observable.label, case, observable.bins
         # flights in bins and longer ones; sums of times and squares; root of the temperature
         self.blocks = Blocks((self.bins + 4,))
         self.before = np.zeros(self.bins + 3)
         self.edges: NDArray[np.float64] = np.zeros(self.bins + 1)
 
-    def observe(self, spheres: RunningSpheres) -> None:
+    def observe(self, spheres: CollidingSpheres) -> None:
         """Take one sample: of what has ended since the last."""
         edges, counts, sums = spheres.free_times
         self.edges = np.array(edges[:: FINE // self.bins])
@@ -88,18 +86,8 @@ class FreeTimesAccumulator:
         self.blocks.add([*(now - self.before), root])
         self.before = now
 
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, before=self.before, edges=self.edges)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.before, self.edges = np.array(state["before"]), np.array(state["edges"])
-
     def pool(self, other: FreeTimesAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
+        super().pool(other)
         self.edges = np.maximum(self.edges, other.edges)  # zero before the first sample
 
     def result(self) -> Result:

@@ -3,8 +3,6 @@
 A row of four numbers is one half of a cache line: what a neighbour needs comes at once.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 REACH = 3  # column of `place`: how far a sphere reaches, a radius or half of a cut-off

@@ -1,7 +1,5 @@
 """Soft spheres in memory: what is laid out how, sorted when, and read by particle number."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
@@ -15,9 +13,10 @@ from mesokit.kernels.group import Packing
 from mesokit.loops.threads import Threads
 from mesokit.method.spheres.common.wall.rows import AMPLITUDE, AXIS, KIND, PLACE, PLANE
 from mesokit.method.spheres.soft.engine import groups
-from mesokit.method.spheres.soft.engine.contact.by_number import pairs_of, remember
+from mesokit.method.spheres.soft.engine.acting import measure_all
 from mesokit.method.spheres.soft.engine.contact.remembered import carry_springs
 from mesokit.method.spheres.soft.engine.contact.room import rooms
+from mesokit.method.spheres.soft.engine.contact.sums import pairs_of, remember
 from mesokit.method.spheres.soft.engine.groups import (
     Bodies,
     Box,
@@ -28,7 +27,6 @@ from mesokit.method.spheres.soft.engine.groups import (
     World,
 )
 from mesokit.method.spheres.soft.engine.lists import GROUP, make_lists, sort
-from mesokit.method.spheres.soft.engine.reading import measure_all
 from mesokit.method.spheres.soft.engine.solid import MOST
 from mesokit.method.spheres.soft.engine.step import advance, find_forces
 from mesokit.method.spheres.soft.engine.taken import all_taken, in_numbers

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
@@ -12,12 +12,13 @@ from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import NOT_STEADY, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.spheres.soft.engine.engine import SoftEngine
 
 PARTS = ("motion", "forces")
 LANDED = 0.1  # of the weight: a bed whose flux is nearer to it has landed
@@ -44,24 +45,19 @@ class ContactStress(Observable):
         if case.particles < 2:
             raise CaseError("1 sphere; expected 2 at least")
 
-    def accumulator(self, case: Case) -> ContactStressAccumulator:
-        """An empty memory for it."""
-        return ContactStressAccumulator(self, case)
 
-
+@accumulator_of(ContactStress)
 class ContactStressAccumulator(BlockAccumulator):
     """Block averages of pressures, temperature, contacts, and flux and weight along gravity."""
 
     def __init__(self, observable: ContactStress, case: Case) -> None:
-        observable.check(case)
         self.name, self.case = observable.label, case
         self.volume = float(np.prod(case.box.size))
         self.floor = _floor(case)
         self.unit = "m/tau^2" if case.box.dimension == 2 else "m/(a tau^2)"
         self.blocks = Blocks((7,))
 
-    def observe(self, spheres: Any) -> None:
-        """Take one sample."""
+    def observe(self, spheres: SoftEngine) -> None:
         d, stress = spheres.dimension, spheres.stress
         pressures = [-float(np.trace(stress[name])) / d for name in ("kinetic", "pair")]
         still = 0 if self.case.walls else 1  # without walls the momentum is zero

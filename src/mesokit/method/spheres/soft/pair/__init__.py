@@ -1,8 +1,6 @@
 """What soft spheres do to one another. A new law of contact is a file here; potentials are those of
 `mesokit.potential`."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import FAMILIES, parts_in
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw, PairLaw
 from mesokit.potential import Pair

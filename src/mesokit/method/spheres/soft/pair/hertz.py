@@ -40,7 +40,6 @@ class HertzLaw(ContactLaw):
     pulls: bool = param(True, doc="whether the damping may pull at the end of a contact")
 
     def normal(self) -> Hertz:
-        """Parameters for the scalar functions below."""
         return Hertz(self.stiffness, self.damping, float(self.pulls))
 
     def largest_force(self, case: Case) -> float:

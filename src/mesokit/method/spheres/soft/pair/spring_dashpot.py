@@ -77,7 +77,6 @@ class SpringDashpot(ContactLaw):
         return self
 
     def normal(self) -> Linear:
-        """Parameters for the scalar functions below."""
         ratio, per_mass = 0.0, 0.0
         if self.damping is None:
             wanted = USUAL_RESTITUTION if self.restitution is None else self.restitution

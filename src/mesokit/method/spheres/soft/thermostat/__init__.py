@@ -1,7 +1,5 @@
 """Thermostats of soft spheres. A new one is a file here."""
 
-from __future__ import annotations
-
 from mesokit.case.registry import parts_in
 from mesokit.method.spheres.soft.thermostat.protocol import SoftThermostat
 

@@ -1,7 +1,5 @@
 """Friction and noise of a bath that is not shown."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 
@@ -21,7 +19,6 @@ class Langevin(SoftThermostat):
 
     @property
     def held_kT(self) -> float:
-        """Thermal energy that it holds."""
         return self.kT
 
     def decay(self, timestep: float) -> float:

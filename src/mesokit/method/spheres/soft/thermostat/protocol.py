@@ -1,7 +1,5 @@
 """What a thermostat of soft spheres is."""
 
-from __future__ import annotations
-
 from mesokit.case.component import component
 from mesokit.case.registry import family
 

@@ -1,7 +1,5 @@
 """Velocities scaled to a temperature."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from mesokit.case.component import component, param, tag
@@ -22,7 +20,6 @@ class RescaleAll(SoftThermostat):
 
     @property
     def held_kT(self) -> float:
-        """Thermal energy that it holds."""
         return self.kT
 
     @property

@@ -7,8 +7,6 @@ Source: the tree of cuts of Shojaaee, Shaebani, Brendel, Torok and Wolf, J.
 Comput. Phys. 231, 612 (2012): sigma_T = sqrt(<T^2> - <T>^2) / <T> of the branches of a node.
 """
 
-from __future__ import annotations
-
 import weakref
 from collections.abc import Sequence
 from typing import Any, NamedTuple

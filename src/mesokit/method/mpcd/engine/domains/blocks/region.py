@@ -1,7 +1,5 @@
 """The cells that a rank holds: its block and the halo around it, and the owners of these."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple

@@ -6,8 +6,6 @@ Bokhari, IEEE Trans. Comput. C-36, 570 (1987); moved while it runs as by Shojaae
 Brendel, Török and Wolf, J. Comput. Phys. 231, 612 (2012).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The time that a rank has worked since the last check of borders, by kind of work."""
 
-from __future__ import annotations
-
 import contextlib
 import time
 from collections.abc import Iterator

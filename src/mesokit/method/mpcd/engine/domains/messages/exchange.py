@@ -23,18 +23,48 @@ from mesokit.method.mpcd.engine.domains.beads.terms import (
 )
 from mesokit.method.mpcd.engine.domains.messages.flow import take_seen, write_seen
 from mesokit.method.mpcd.engine.domains.messages.ghosts import find_owners
-from mesokit.method.mpcd.engine.domains.messages.mpi import finish
-from mesokit.method.mpcd.engine.domains.messages.rows import receive_rows, send_rows
+from mesokit.method.mpcd.engine.domains.messages.mpi import finish, receive, send
 from mesokit.method.mpcd.engine.domains.messages.shared import (
     FAULTS,
     FULL,
     GHOSTS,
     HEADER,
+    MESSAGES,
     RECORD_WORDS,
     SUM_WORDS,
     shares,
 )
 from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
+
+
+@scalar
+def receive_rows(shared, n, rows, starts, tag):
+    """Begin to receive rows of all partners, each into its part; returns the number of messages."""
+    words = rows.shape[1]
+    for p in range(len(shared.ranks)):
+        most = (starts[p + 1] - starts[p]) * words
+        n = receive(shared.post, n, address_of(rows, starts[p]), most, shared.ranks[p], tag)
+    return n
+
+
+@scalar
+def send_rows(shared, n, rows, first, number, p, tag, kind):
+    """Begin to send `number` rows, the header first, to a partner; returns the number of messages.
+
+    `kind` is the place in `Shared.meter` that counts the words.
+    """
+    words = number * rows.shape[1]
+    n = send(shared.post, n, address_of(rows, first), words, shared.ranks[p], tag)
+    shared.meter[MESSAGES] += 1
+    shared.meter[kind] += words
+    return n
+
+
+@scalar
+def address_of(rows, first):
+    """Address of a row of 64-bit numbers."""
+    return np.uint64(rows.ctypes.data) + np.uint64(8 * first * rows.shape[1])
+
 
 SUMS, COEFFICIENTS = 1, 2  # tags of messages
 

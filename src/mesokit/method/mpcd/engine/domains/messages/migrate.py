@@ -24,9 +24,9 @@ from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
+from mesokit.method.mpcd.engine.domains.messages.exchange import receive_rows, send_rows
 from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of
 from mesokit.method.mpcd.engine.domains.messages.mpi import finish
-from mesokit.method.mpcd.engine.domains.messages.rows import receive_rows, send_rows
 from mesokit.method.mpcd.engine.domains.messages.shared import (
     ARRIVED,
     DONE,

@@ -4,8 +4,6 @@ A step of a small fluid takes less time than Python needs to pass its arrays, so
 sends messages. Handles are whole numbers of 32 or 64 bits, as in the library.
 """
 
-from __future__ import annotations
-
 import ctypes
 import platform
 from typing import Any, NamedTuple

@@ -1,4 +1,4 @@
-"""What a run was made from: the sources of mesokit, and the files and runs that it starts from."""
+"""Where the numbers of a run come from: case, versions, host, and the sources of mesokit."""
 
 from __future__ import annotations
 
@@ -6,16 +6,95 @@ import contextlib
 import functools
 import hashlib
 import json
+import os
+import platform
 import subprocess
+import sys
 from collections.abc import Mapping
+from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mesokit.io.checkpoint import digest_of_file
+from mesokit.case.outside import outside_parts
+from mesokit.io.checkpoint import digest, digest_of_file
+from mesokit.seam.method import method_of
 
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+LIBRARIES = ("mesokit", "numpy", "scipy", "numba", "h5py", "matplotlib", "pydantic")
 PACKAGE = Path(__file__).parents[1]
 SECONDS = 5  # for git to answer
+
+
+def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
+    """Where the numbers of a run come from, as it starts: case, versions, host, time.
+
+    `sources` tells the state of mesokit, `starts_from` that of files and runs it starts from.
+    `units` says what a reduced unit is in SI, None if the case does not; `parts` which classes come
+    from outside mesokit, and from where.
+    `threads` are those of each rank. `ended` and `failed` (why) are None, `timings` (of rank 0) and
+    `shared_work` (how several ranks have shared it) empty until someone fills them in.
+    """
+    return {
+        **recorded_case(case),
+        "seed": case.run.seed,
+        "sources": sources(),
+        "starts_from": parents(method_of(case).initial.files(case)),
+        "parts": outside_parts(case),
+        "versions": {"python": platform.python_version()} | _versions(),
+        "host": platform.node(),
+        "system": platform.platform(),
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "threads": threads,
+        "ranks": ranks,
+        "device": "cpu",
+        "command": sys.argv,
+        "started": now(),
+        "resumed": [],
+        "ended": None,
+        "failed": None,
+        "timings": {},
+        "shared_work": {},
+    }
+
+
+def recorded_case(case: Case) -> dict[str, Any]:
+    """What a record says of the case itself, and of its units."""
+    text = case.to_toml()
+    return {"case": text, "case_digest": digest(text), "units": _units(case)}
+
+
+def _units(case: Case) -> dict[str, Any] | None:
+    convert = method_of(case).si
+    if case.units is None or convert is None:
+        return None
+    return dict(convert(case).record())
+
+
+def now() -> str:
+    """The time, as texts sort."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def _versions() -> dict[str, str]:
+    found = {}
+    for name in LIBRARIES:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = "not installed as a package"
+    return found
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        return next(line.split(":", 1)[1].strip() for line in lines if "model name" in line)
+    except (OSError, StopIteration, UnicodeDecodeError):
+        return platform.processor()
 
 
 @functools.cache

@@ -1,0 +1,217 @@
+"""What theory expects of hard spheres: equilibrium, ways, memory, neighbours and cooling."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.errors import CaseError
+from mesokit.method.spheres.common.expected.cooling import Cooling, haff_time, uniform
+from mesokit.method.spheres.common.expected.enskog import fluid_note
+from mesokit.method.spheres.common.expected.equilibrium import (
+    Equilibrium,
+    of_start,
+    still_walls,
+    surfaces,
+)
+from mesokit.method.spheres.common.expected.neighbours import NeighboursOfSpheres
+from mesokit.method.spheres.common.velocity_memory import VelocityMemory
+from mesokit.observe import mean_square_displacement
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.seam.engine import Array, Integers
+
+
+def equilibrium(case: Case) -> Equilibrium | None:
+    """None where collisions take energy, or baths and walls of two temperatures are there."""
+    section = case.spheres
+    if not (section.collision.elastic and still_walls(case) and _keep_energy(case)):
+        return None
+    heating, warm = section.heating, set()
+    if heating is not None:
+        if heating.bath_kT is None:
+            return None
+        warm.add(heating.bath_kT)
+    for surface in surfaces(case):
+        if surface.rule == "diffuse":
+            given = surface.contact.temperature if surface.contact is not None else None
+            warm.add(float(section.kT if given is None else given))
+    if len(warm) > 1:
+        return None
+    if warm:
+        return Equilibrium(warm.pop(), True)
+    even = not section.collision.rough or section.first_spin_kT == section.kT
+    kept = even and section.collision.hard and not section.gravity
+    return Equilibrium(of_start(case) if kept else math.nan, True)
+
+
+def _keep_energy(case: Case) -> bool:
+    """Whether walls that are not warm take none."""
+    for surface in surfaces(case):
+        contact = surface.contact
+        if contact is None or surface.rule == "diffuse":
+            continue
+        if contact.restitution not in (None, 1.0):
+            return False
+        if contact.tangential not in (None, -1.0, 1.0) or contact.friction is not None:
+            return False
+    return True
+
+
+DECAYED = 5.0  # times of the velocity's memory after which motion is diffusive
+
+
+class Displacement(mean_square_displacement.Displacement):
+    """Ballistic at first, diffusive when the velocity is forgotten: 2 D (t - T + T exp(-t/T)) along
+    each axis, T = m D/kT, with the D of Enskog."""
+
+    answers = "mean-square-displacement"
+
+    def __init__(self, case: Case, observable: Any) -> None:
+        if observable.of != "particles" or observable.kind is not None:
+            raise CaseError("of: expected 'particles'; there are no molecules")
+        chosen = observable.components or [axis for axis in case.box.axes if not _shut(case, axis)]
+        if not chosen:
+            raise CaseError("mean-square-displacement: every axis is closed by a wall")
+        self.axes = tuple(case.box.index(axis, "components") for axis in chosen)
+        self.case, self.length, self.number = case, 1, case.particles
+        self.timestep = case.spheres.timestep
+        self.diffusion, self.memory = enskog(case)
+
+    def expected(self, steps: Integers) -> Array | None:
+        """The displacement after so many steps, None without a theory."""
+        if not math.isfinite(self.diffusion):
+            return None
+        time = np.asarray(steps * self.timestep, float)
+        flown: NDArray[np.float64] = time + self.memory * np.expm1(-time / self.memory)
+        return 2 * len(self.axes) * self.diffusion * flown
+
+    def coefficient(self) -> tuple[float, str]:
+        """D of Enskog, which is not exact."""
+        return self.diffusion, "approximate: Enskog: neglects velocity correlations"
+
+    def diffusive_from(self) -> float:
+        """When the velocity is forgotten."""
+        return DECAYED * self.memory if math.isfinite(self.memory) else 0.0
+
+    def grows(self) -> bool:
+        """In 2D, where neither walls nor heating take momentum."""
+        kept = not (self.case.walls or self.case.spheres.heating)
+        return self.case.box.dimension == 2 and kept and self.number > 1
+
+    def legend(self) -> str:
+        """Whose law it is."""
+        return "Enskog"
+
+
+def _shut(case: Case, axis: str) -> bool:
+    return any(axis in wall.closed_axes for wall in case.walls)
+
+
+def enskog(case: Case) -> tuple[float, float]:
+    """Diffusion coefficient and memory of the velocity, nan where there is no theory."""
+    section, box = case.spheres, case.box
+    kind, d = section.kinds[0], box.dimension
+    alike = len(section.kinds) == 1 and kind.spread == 0 and case.particles > 1
+    quiet = not (case.walls or section.gravity or section.heating) and section.kT > 0
+    if not (alike and quiet and section.collision.elastic and section.collision.hard):
+        return math.nan, math.nan
+    if section.collision.rough:
+        return math.nan, math.nan
+    kT_over_m = section.kT / kind.mean_mass(d)
+    chi = theory.contact_value(section.fraction(box), d)
+    density, diameter = case.particles / box.volume, kind.diameter * section.scale(box)
+    found = theory.enskog_diffusion(density, diameter, kT_over_m, chi, d)
+    return found, found / kT_over_m
+
+
+COARSE = 0.5  # memories between two samples, beyond which the sum over them is no integral
+NOTE = "approximate: Enskog: neglects velocity correlations"
+
+
+class EnskogMemory(VelocityMemory):
+    """exp(-t/T), T = m D/kT, with the D of Enskog. The energy is that of the start, exactly."""
+
+    def __init__(self, case: Case, observable: Any) -> None:
+        super().__init__(case, observable)
+        self.coefficient, self.time = enskog(case)
+        self.timestep = float(case.spheres.timestep)
+        # velocities add up to zero, and a component has n - 1 of n degrees of freedom
+        self.square = self.coefficient / self.time * (1 - 1 / case.particles)
+
+    def expected(self, steps: Integers) -> Array | None:
+        """Of a component; None without a theory."""
+        if math.isnan(self.time):
+            return None
+        return np.asarray(self.square * np.exp(-steps * self.timestep / self.time))
+
+    def legend(self) -> str:
+        """Whose law it is."""
+        return "Enskog"
+
+    def level(self, error: float, runs: int) -> tuple[float, float] | None:
+        """kT/m, which the start gives exactly."""
+        return self.square, error
+
+    def share(self, every: int) -> str | None:
+        """Not told without a theory."""
+        return None if math.isnan(self.time) else NOTE
+
+    def diffusion(self, every: int) -> tuple[float, str] | None:
+        """D of Enskog."""
+        coarse = every * self.timestep > COARSE * self.time  # nan: not known, and told
+        return None if coarse else (self.coefficient, "" if math.isnan(self.time) else NOTE)
+
+
+class Neighbours(NeighboursOfSpheres):
+    """g at contact by the equation of state, which the pressure of hard spheres is made of: Z - 1
+    is 2^(d-1) times the packing fraction and g; nan of unlike spheres and of those that lose
+    energy. `diameter` is where, nan of unlike ones."""
+
+    def __init__(self, case: Case, observable: Any) -> None:
+        super().__init__(case, observable)
+        section, box = case.spheres, case.box
+        kind, d = section.kinds[0], box.dimension
+        alike = len(section.kinds) == 1 and kind.spread == 0
+        if alike:
+            self.diameter = kind.diameter * section.scale(box)
+        phi = section.fraction(box)
+        plain = section.collision.elastic and section.collision.hard
+        if alike and plain and not section.heating:
+            self.note = fluid_note(case)
+            self.value = (theory.compressibility(phi, d) - 1) / (2 ** (d - 1) * phi)
+
+
+class HardCooling:
+    """A bath or warm walls of one temperature, or Haff's law."""
+
+    answers = "granular-temperature"
+
+    def __init__(self, case: Case, observable: Any) -> None:
+        self.case, section = case, case.spheres
+        collision, state = section.collision, equilibrium(case)
+        self.known = Cooling(collision.rough)
+        warm = section.heating is not None or case.walls
+        if warm and state is not None and not math.isnan(state.kT):
+            held = state.kT if section.heating is not None or self._warm_walls() else math.nan
+            self.known = self.known._replace(held=held, fluctuates=True)
+        constant = collision.constant_restitution
+        smooth = not collision.rough and section.heating is None
+        if constant is not None and uniform(case) and smooth:
+            self.known = self.known._replace(restitution=constant)
+
+    def _warm_walls(self) -> bool:
+        return any(
+            surface.rule == "diffuse"
+            for wall in self.case.walls
+            for surface in wall.surfaces().values()
+        )
+
+    def haff_time(self, kT: float) -> float:
+        """The time of Haff's law, from a temperature."""
+        return haff_time(self.case, self.known.restitution, kT)

@@ -1,0 +1,84 @@
+"""What theory expects of soft spheres: equilibrium and cooling; of their ways it knows nothing."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from mesokit.errors import CaseError
+from mesokit.geometry.walls import closed_axes
+from mesokit.method.spheres.common.expected.cooling import Cooling, haff_time, uniform
+from mesokit.method.spheres.common.expected.equilibrium import Equilibrium, still_walls, surfaces
+from mesokit.method.spheres.soft.pair.protocol import ContactLaw
+from mesokit.observe import mean_square_displacement
+from mesokit.seam.method import method_of
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+def equilibrium(case: Case) -> Equilibrium | None:
+    """None where contacts take energy. Without a bath the temperature is known afterwards alone:
+    forces take a part of the energy of the start."""
+    section = case.spheres
+    touching = isinstance(section.pair, ContactLaw)
+    if (touching and not section.pair.elastic) or not still_walls(case):
+        return None
+    for surface in surfaces(case):
+        contact = surface.contact
+        if contact is not None and (contact.restitution not in (None, 1.0) or contact.friction):
+            return None
+    bath = section.thermostat
+    held = math.nan
+    if bath is not None:
+        free = 1.0 if not bath.scaled_every or case.walls else 1 - 1 / case.particles
+        held = float(bath.held_kT * free)
+    return Equilibrium(held, touching)
+
+
+class Displacement(mean_square_displacement.Displacement):
+    """What the observable asks; theory knows of no such fluid."""
+
+    answers = "mean-square-displacement"
+
+    def __init__(self, case: Case, observable: Any) -> None:
+        if observable.of != "particles" or observable.kind is not None:
+            raise CaseError("of: expected 'particles'; there are no molecules")
+        shut = closed_axes(case)
+        free = [axis for k, axis in enumerate(case.box.axes) if k not in shut]
+        chosen = observable.components or free
+        if not chosen:
+            raise CaseError("mean-square-displacement: every axis is closed by a wall")
+        self.axes = tuple(case.box.index(axis, "components") for axis in chosen)
+        self.case, self.length, self.number = case, 1, case.particles
+        self.timestep = method_of(case).timestep(case)
+
+    def grows(self) -> bool:
+        """In 2D, where neither walls nor a bath take momentum."""
+        case, bath = self.case, self.case.spheres.thermostat
+        kept = not case.walls and (bath is None or bath.decay(self.timestep) == 1.0)
+        return case.box.dimension == 2 and kept and self.number > 1
+
+
+class SoftCooling:
+    """A bath, or Haff's law of contacts whose restitution does not depend on the speed."""
+
+    answers = "granular-temperature"
+
+    def __init__(self, case: Case, observable: Any) -> None:
+        self.case, section = case, case.spheres
+        bath, law, state = section.thermostat, section.pair, equilibrium(case)
+        self.known = Cooling(section.turns)
+        if bath is not None and state is not None:
+            fluctuates = not bath.scaled_every
+            self.known = self.known._replace(held=float(bath.held_kT), fluctuates=fluctuates)
+        if bath is None and uniform(case) and isinstance(law, ContactLaw) and not section.turns:
+            mass = 0.5 * section.kinds[0].mean_mass(case.box.dimension)
+            slow, fast = (law.restitution_of(mass, speed) for speed in (0.1, 1.0))
+            time = law.contact_time_of(mass, math.sqrt(section.kT / mass) or 1.0)
+            if math.isclose(slow, fast, rel_tol=1e-9):
+                self.known = self.known._replace(restitution=slow, contact_time=time)
+
+    def haff_time(self, kT: float) -> float:
+        """The time of Haff's law, from a temperature."""
+        return haff_time(self.case, self.known.restitution, kT)
