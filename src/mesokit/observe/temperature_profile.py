@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,7 @@ class TemperatureProfile(Profile):
     """
 
     quantity: Literal["temperature-profile"] = tag("temperature-profile")
+    at_any_kT: ClassVar[tuple[str, ...]] = ("",)
     kind: int | str | None = param(None, doc=KIND)
 
     def theory(self, case: Case) -> TemperatureInSlices:

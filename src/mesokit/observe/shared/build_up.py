@@ -35,21 +35,39 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
     the run is too short for error bars."""
     result = in_units(bounded(accumulator.result(), accumulator), case)
     observable = next((one for one in case.observe if one.label == result.name), None)
-    if observable is None or not observable.of_built_up_flow:
+    if observable is None:
         return result
-    note = _too_early(accumulator, result, case, observable.every) or _drift(accumulator, result)
+    note, length = "", _length(accumulator, result) * observable.every
+    if observable.of_built_up_flow:
+        note = _too_early(accumulator, result, case, length) or _drift(accumulator, result)
+    steps = case.run.warmup + min(length, case.run.steps)
+    heat = method_of(case).heat_caveat(case, steps)
+    return _marked(_marked(result, note), heat, observable.at_any_kT)
+
+
+def _marked(result: Result, note: str, but: tuple[str, ...] = ()) -> Result:
+    """With a note in front of those of its comparisons, but of those with such words in their
+    names, or that are not steady for another reason."""
     if not note:
         return result
     return dataclasses.replace(
         result,
         comparisons=tuple(
-            dataclasses.replace(c, note="; ".join([note, *_of_theory(c)]))
+            c
+            if not c.steady or any(words in c.what for words in but)
+            else dataclasses.replace(c, note="; ".join([note, *_of_theory(c, note)]))
             for c in result.comparisons
         ),
     )
 
 
-def _too_early(accumulator: Accumulator, result: Result, case: Case, every: int) -> str:
+def _length(accumulator: Accumulator, result: Result) -> int:
+    """Samples of each run that is pooled in it."""
+    series = getattr(getattr(accumulator, "blocks", None), "series", 1)
+    return int(result.samples // series)
+
+
+def _too_early(accumulator: Accumulator, result: Result, case: Case, length: int) -> str:
     """That samples began before the flow had built up, where the method knows how long it takes, or
     the flow itself tells."""
     method = method_of(case)
@@ -58,8 +76,6 @@ def _too_early(accumulator: Accumulator, result: Result, case: Case, every: int)
         build_up = accumulator.build_up()
     if build_up is None:
         return ""
-    series = getattr(getattr(accumulator, "blocks", None), "series", 1)  # pooled runs
-    length = result.samples // series * every
     lacks = build_up.lacks(length) if length else 0.0
     enough = build_up.had >= build_up.need  # then only an error bar that is known tells more
     seen = [c for c in result.comparisons if not (enough and LOWER_BOUND in c.note)]
@@ -91,11 +107,13 @@ def _drift(accumulator: Accumulator, result: Result) -> str:
     return ""
 
 
-def _of_theory(comparison: Comparison) -> list[str]:
-    """What its note says of the theory, but that the flow is steady; error bars of a flow that
-    builds up are another matter."""
-    parts = comparison.note.split("; ")
-    return [one for one in parts if one and one not in STEADY and not one.startswith(LOWER_BOUND)]
+def _of_theory(comparison: Comparison, caveat: str) -> list[str]:
+    """What its note says beside a caveat: of what is not steady nothing of steady flow, and nothing
+    of error bars, which are another matter there."""
+    parts = [part for part in comparison.note.split("; ") if part]
+    if not caveat.startswith(NOT_STEADY):
+        return parts
+    return [one for one in parts if one not in STEADY and not one.startswith(LOWER_BOUND)]
 
 
 def _is_off(comparison: Comparison, share: float) -> bool:

@@ -50,6 +50,7 @@ class Forces(Observable):
 
     quantity: Literal["forces"] = tag("forces")
     of_built_up_flow: ClassVar[bool] = True
+    at_any_kT: ClassVar[tuple[str, ...]] = ("force on all solids",)
     asks_transport: ClassVar[bool] = True
     measures: ClassVar[tuple[str, ...]] = ("walls",)
     length: float | None = param(
