@@ -16,12 +16,15 @@ from mesokit import (
     FlowRate,
     Fluid,
     Forces,
+    MaxwellBoltzmann,
     Plates,
     Run,
     Simulation,
     Study,
+    Surface,
     Uniform,
     VelocityProfile,
+    WallStress,
 )
 from mesokit.io.tables import record
 from mesokit.method.mpcd.observe.shared.flow_memory import flow_memory
@@ -251,3 +254,40 @@ def test_the_time_of_a_flow_from_rest_is_that_of_its_exponential(time, had, leng
     found = flow_memory(case, 0, momentum, blocks, every=10)
     assert found.time == pytest.approx(time, rel=5e-3)
     assert found.times == pytest.approx(length / time, rel=5e-3)
+
+
+def test_a_flow_that_builds_up_leaves_the_pressure_on_plates():
+    """The pressure is that of the fluid at rest from the start; the drag is not."""
+    case = Case(
+        run=Run(steps=160, warmup=10, seed=4),
+        box=Box([40, 20]),
+        fluid=Fluid(density=7, thermostat=MaxwellBoltzmann()),
+        walls=[Plates("y", upper=Surface(velocity=(0.3, 0)))],
+        observe=[WallStress(every=1)],
+    )
+    simulation = Simulation(case, threads=1)
+    simulation.run()
+    found = simulation["wall-stress"].comparisons
+    drags, pressures = (
+        [one for one in found if one.what.startswith(what)] for what in ("drag", "pressure")
+    )
+    assert len(drags) == len(pressures) == 2
+    assert all(one.note.startswith(NOTE) for one in drags)
+    assert all(one.steady and abs(one.deviation) < 4 for one in pressures)
+
+
+def test_a_pressure_that_changes_is_not_steady():
+    """By its own samples, whatever the flow does."""
+    case = Case(
+        run=Run(steps=640),
+        box=Box([10, 10]),
+        fluid=Fluid(),
+        walls=[Plates("y")],
+        observe=[WallStress(every=1)],
+    )
+    accumulator, noise = case.observe[0].accumulator(case), np.random.default_rng(2)
+    for n in range(640):
+        pressure = 10 + 0.002 * n + 0.1 * noise.normal()
+        accumulator.blocks.add(np.array([[0.0, -pressure], [0.0, pressure]]))
+    found = result_of(accumulator, case).comparisons
+    assert found and all(one.note.startswith("not steady: pressure on") for one in found)

@@ -37,12 +37,14 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
     observable = next((one for one in case.observe if one.label == result.name), None)
     if observable is None:
         return result
-    note, length = "", _length(accumulator, result) * observable.every
+    length = _length(accumulator, result) * observable.every
     if observable.of_built_up_flow:
-        note = _too_early(accumulator, result, case, length) or _drift(accumulator, result)
+        early = _too_early(accumulator, result, case, length, observable.in_any_flow)
+        drift = "" if early else _drift(accumulator, result)
+        result = _marked(_marked(result, early, observable.in_any_flow), drift)
     steps = case.run.warmup + min(length, case.run.steps)
     heat = method_of(case).heat_caveat(case, steps)
-    return _marked(_marked(result, note), heat, observable.at_any_kT)
+    return _marked(result, heat, observable.at_any_kT)
 
 
 def _marked(result: Result, note: str, but: tuple[str, ...] = ()) -> Result:
@@ -54,11 +56,16 @@ def _marked(result: Result, note: str, but: tuple[str, ...] = ()) -> Result:
         result,
         comparisons=tuple(
             c
-            if not c.steady or any(words in c.what for words in but)
+            if not c.steady or _has(c, but)
             else dataclasses.replace(c, note="; ".join([note, *_of_theory(c, note)]))
             for c in result.comparisons
         ),
     )
+
+
+def _has(comparison: Comparison, words: tuple[str, ...]) -> bool:
+    """Whether any of these words are in its name."""
+    return any(one in comparison.what for one in words)
 
 
 def _length(accumulator: Accumulator, result: Result) -> int:
@@ -67,9 +74,11 @@ def _length(accumulator: Accumulator, result: Result) -> int:
     return int(result.samples // series)
 
 
-def _too_early(accumulator: Accumulator, result: Result, case: Case, length: int) -> str:
-    """That samples began before the flow had built up, where the method knows how long it takes, or
-    the flow itself tells."""
+def _too_early(
+    accumulator: Accumulator, result: Result, case: Case, length: int, but: tuple[str, ...]
+) -> str:
+    """That samples began before the flow had built up, where the method has that time, or it
+    follows from the flow; by all numbers but those with such words in their names."""
     method = method_of(case)
     build_up = method.build_up(case) if method.build_up is not None else None
     if build_up is None and isinstance(accumulator, OfFlow):
@@ -78,7 +87,8 @@ def _too_early(accumulator: Accumulator, result: Result, case: Case, length: int
         return ""
     lacks = build_up.lacks(length) if length else 0.0
     enough = build_up.had >= build_up.need  # then only an error bar that is known tells more
-    seen = [c for c in result.comparisons if not (enough and LOWER_BOUND in c.note)]
+    of_flow = [c for c in result.comparisons if not _has(c, but)]
+    seen = [c for c in of_flow if not (enough and LOWER_BOUND in c.note)]
     if not any(_is_off(c, lacks) for c in seen):
         return ""
     if enough:
