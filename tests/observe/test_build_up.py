@@ -291,3 +291,61 @@ def test_a_pressure_that_changes_is_not_steady():
         accumulator.blocks.add(np.array([[0.0, -pressure], [0.0, pressure]]))
     found = result_of(accumulator, case).comparisons
     assert found and all(one.note.startswith("not steady: pressure on") for one in found)
+
+
+def test_pooled_samples_decide_whether_a_flow_past_an_obstacle_has_built_up(tmp_path):
+    """The momentum of one run may be off by chance; the words are those of one estimate."""
+    case = Case(
+        run=Run(steps=400, warmup=160),
+        box=Box([20, 20]),
+        fluid=Fluid(force=Uniform([0.02, 0.0]), thermostat=MaxwellBoltzmann()),
+        walls=[Disk([10, 10], 4)],
+        observe=[FlowRate(), Forces(length=8, every=5)],
+    )
+    study = Study(case, None, 3, output=tmp_path / "study")
+    study.run(threads=1)
+    rows = study.table()
+    for name in ("flow-rate", "forces"):
+        notes = [row.number.note for row in rows if row.observable == name]
+        said = {note.split("; ")[0] for note in notes}
+        assert len(notes) >= 3 and len(said) == 1
+        assert "steady flow" not in " ".join(notes)
+        assert said.pop().startswith("not steady: the flow needs about ")
+    words = {row.number.note.split(" steps")[0] for row in rows}
+    assert len(words) == 1  # two digits, and one momentum
+
+
+@pytest.mark.parametrize(
+    ("pooled", "runs", "note"),
+    [
+        ("a law", ["not steady: the flow needs about 1200 steps; a law", ""], "a law"),
+        ("a law", ["not steady: the flow still lacked 7 % of its speed"] * 3, "a law"),
+        (
+            "not steady: the flow needs about 800 steps",
+            ["approximate: thin; a law", "not steady: the flow needs about 830 steps"],
+            "not steady: the flow needs about 800 steps; approximate: thin",
+        ),
+    ],
+)
+def test_the_flow_of_all_runs_decides_for_the_pooled_number(pooled, runs, note):
+    (found,) = with_those_of(*numbers_with(pooled), numbers_with(*runs)).comparisons
+    assert found.note == note
+
+
+@pytest.mark.parametrize("runs", [1, 3])
+def test_relaxation_times_are_those_of_each_run(runs):
+    """Here a speed of 0.1 along plates 30 apart, for 1200 steps."""
+    case = dataclasses.replace(flow(1200, 6000), observe=[FlowRate(every=10)])
+    pooled, fluid = case.observe[0].accumulator(case), FakeFluid(case)
+    for run in range(runs):
+        accumulator = pooled if run == 0 else case.observe[0].accumulator(case)
+        noise = np.random.default_rng(run).normal(0.1, 0.02, 120)
+        for n, speed in enumerate(noise + 0.1 - noise.mean()):
+            fluid.step = 6000 + 10 * (n + 1)
+            fluid.totals = lambda v=speed: (fluid.n, fluid.m.sum() * np.array([v, 0.0]), 0.0)
+            accumulator.observe(fluid)
+        if run:
+            pooled.pool(accumulator)
+    note = result_of(pooled, case).comparisons[0].note
+    each = "the" if runs == 1 else "each"
+    assert f"{each} run has 6 relaxation times" in note  # 120 tau over 0.1/0.005

@@ -7,7 +7,8 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
-from mesokit.observe.shared.caveats import LOWER_BOUND, STEADY
+from mesokit.case.describe.digits import two_digits
+from mesokit.observe.shared.caveats import BUILDS_UP, LOWER_BOUND, STEADY
 from mesokit.observe.shared.short_run import CHI_SQUARE, bounded
 from mesokit.seam.in_units import in_units
 from mesokit.seam.method import BuildUp, method_of
@@ -81,7 +82,8 @@ def _too_early(
     follows from the flow; by all numbers but those with such words in their names."""
     method = method_of(case)
     build_up = method.build_up(case) if method.build_up is not None else None
-    if build_up is None and isinstance(accumulator, OfFlow):
+    estimated = build_up is None and isinstance(accumulator, OfFlow)
+    if estimated and isinstance(accumulator, OfFlow):
         build_up = accumulator.build_up()
     if build_up is None:
         return ""
@@ -92,8 +94,9 @@ def _too_early(
     if not any(_is_off(c, lacks) for c in seen):
         return ""
     if enough:
-        return f"{NOT_STEADY}: the flow still lacked {100 * lacks:.2g} % of its speed"
-    return f"{NOT_STEADY}: the flow needs {build_up.need} steps before samples, had {build_up.had}"
+        return f"{BUILDS_UP}still lacked {100 * lacks:.2g} % of its speed"
+    need = f"about {two_digits(build_up.need)}" if estimated else f"{build_up.need}"
+    return f"{BUILDS_UP}needs {need} steps before samples, had {build_up.had}"
 
 
 def _drift(accumulator: Accumulator, result: Result) -> str:

@@ -34,13 +34,16 @@ def bounded(result: Result, accumulator: Any) -> Result:
     )
 
 
-def of_relaxations(times: float) -> str:
-    """The caveat of a run of so many relaxation times of what it measures.
+def of_relaxations(times: float, runs: int = 1, of: str = "relaxation times") -> str:
+    """The caveat of a run of so many relaxation times of what it measures, or of several runs that
+    have as many each.
 
     >>> of_relaxations(2.345)
     'error bar is a lower bound: the run has 2.3 relaxation times'
+    >>> of_relaxations(12.0, 8, "stress times")
+    'error bar is a lower bound: each run has 12 stress times'
     """
-    return f"{LOWER_BOUND}: the run has {times:.2g} relaxation times"
+    return f"{LOWER_BOUND}: {'each' if runs > 1 else 'the'} run has {times:.2g} {of}"
 
 
 def _noted(comparison: Comparison, note: str) -> Comparison:

@@ -158,7 +158,9 @@ class NormalModesAccumulator:
                 what, run, short = f"normal-mode time {p + 1}", self.relaxations(correlator), ""
                 if 0 < run < ENOUGH:  # the rate of an exponential memory has this error at least
                     seen = len(self.beads) * self.case.box.dimension * run
-                    error, short = max(error, value * (2 / seen) ** 0.5), of_relaxations(run)
+                    error = max(error, value * (2 / seen) ** 0.5)
+                    runs = correlator.series
+                    short = of_relaxations(run / runs, runs)
                 note_of_time = noted(value, note, short)
                 found.append(Comparison(what, value, error, expected, "tau", note_of_time))
         for p, correlator in enumerate(self.correlators[:SHOWN]):
@@ -170,7 +172,8 @@ class NormalModesAccumulator:
                 if 0 < times_of_run < ENOUGH:  # independent components tell what blocks do not
                     seen = len(self.beads) * d * (1 + times_of_run)
                     error = max(error, value * (2 / seen) ** 0.5)
-                    short = of_relaxations(times_of_run)
+                    runs = correlator.series
+                    short = of_relaxations(times_of_run / runs, runs)
                 found.append(
                     Comparison(
                         f"mean square of mode {p + 1}",
@@ -184,7 +187,7 @@ class NormalModesAccumulator:
         return found
 
     def relaxations(self, correlator: MultipleTau) -> float:
-        """How many relaxation times of a mode the run lasts; 0 where it is not known."""
+        """How many relaxation times of a mode all runs last; 0 where it is not known."""
         measured = self.relaxation_time(correlator)
         if measured is None or not measured[0] > 0:
             return 0.0

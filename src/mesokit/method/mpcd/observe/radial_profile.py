@@ -218,10 +218,11 @@ class RadialProfileAccumulator(ShellAccumulator):
 
     def short_run(self, rate: float) -> str:
         """Where blocking cannot see the slowest eddies, which decay at this rate: a note."""
-        time = self.blocks.count * self.observable.every * self.case.fluid.timestep
+        runs, step = self.blocks.series, self.case.fluid.timestep
+        time = self.blocks.count / runs * self.observable.every * step
         if not 0 < time * rate < ENOUGH:
             return ""
-        return of_relaxations(time * rate)
+        return of_relaxations(time * rate, runs)
 
 
 class RoundFlow:

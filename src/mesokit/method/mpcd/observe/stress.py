@@ -87,8 +87,7 @@ class StressAccumulator(TensorAccumulator):
         slowest = max((float(times.mode[0]) for _, times in self.springs), default=0.0)
         if not 0 < self.length() < ENOUGH * slowest:
             return ""
-        times = self.length() / slowest
-        return of_relaxations(times)
+        return of_relaxations(self.length() / slowest, self.blocks.series)
 
     def least(self, weight: Array) -> float:
         """Least error of a sum of elements of the stress of bonds, and so of the total, with these

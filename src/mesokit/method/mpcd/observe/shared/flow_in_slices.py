@@ -115,11 +115,12 @@ class Seen:
 
     def short_run(self, viscosity: float) -> str:
         """Where blocking cannot see the slowest eddies, which live H^2/(pi^2 nu): a note."""
-        time = self.profile.blocks.count * self.profile.observable.every * self.case.fluid.timestep
+        blocks, step = self.profile.blocks, self.case.fluid.timestep
+        time = blocks.count / blocks.series * self.profile.observable.every * step
         times = time * np.pi**2 * viscosity / self.edges[-1] ** 2
         if not 0 < times < ENOUGH:
             return ""
-        return of_relaxations(times)
+        return of_relaxations(times, blocks.series)
 
     def plates(self) -> tuple[float, float]:
         """Velocities of the lower and the upper plate."""

@@ -26,21 +26,23 @@ LONGEST = 100.0  # relaxation time that a run may show, in lengths of the run wi
 class FlowMemory(NamedTuple):
     """A run beside the relaxation time of the momentum of its flow.
 
-    time: the relaxation time; times: length of the run in such times, both nan where no force tells
-    them. least: least standard error of the mean momentum, 0 in a long run; in a short one that of
-    a thermal momentum, of variance M kT, whose correlation falls as an exponential.
+    time: the relaxation time; times: length of the run in such times, both nan where no force
+    gives them. least: least standard error of the mean momentum, 0 in a long run; in a short one
+    that of a thermal momentum, of variance M kT, whose correlation falls as an exponential.
+    runs: how many are pooled, each of that length.
     """
 
     time: float
     times: float
     least: float
+    runs: int = 1
 
     @property
     def note(self) -> str:
         """Where blocking cannot see how slowly the flow changes: a caveat."""
         if not self.times < ENOUGH:
             return ""
-        return of_relaxations(self.times)
+        return of_relaxations(self.times, self.runs)
 
 
 def flow_memory(case: Case, axis: int, momentum: float, blocks: Blocks, every: int) -> FlowMemory:
@@ -62,7 +64,7 @@ def flow_memory(case: Case, axis: int, momentum: float, blocks: Blocks, every: i
     times, least = length / time, 0.0
     if times < ENOUGH:
         least = float((mass * case.fluid.kT * kept(times) / blocks.series) ** 0.5)
-    return FlowMemory(time, times, least)
+    return FlowMemory(time, times, least, blocks.series)
 
 
 def _relaxation(given: float, had: float, length: float) -> float:

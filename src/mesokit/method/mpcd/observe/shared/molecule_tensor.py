@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from mesokit.method.mpcd.expected.molecules import least_times_of
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
 from mesokit.observe.shared.over_molecules import OwnMeans
+from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.observable import BlockAccumulator, Observable, State, pack, unpack
 from mesokit.seam.result import Array
 from mesokit.statistics import Blocks
@@ -116,8 +117,9 @@ class MoleculeTensorAccumulator(TensorAccumulator):
             return self.own.caution()
         if not 0 < times < ENOUGH:
             return ""
-        most = "at most " * (self.case.solutes is not None and self.case.fluid.molecule is not None)
-        return f"error bar is a lower bound: the run has {most}{times:.2g} relaxation times"
+        both = self.case.solutes is not None and self.case.fluid.molecule is not None
+        words = "relaxation times at most" if both else "relaxation times"
+        return of_relaxations(times, self.runs, words)
 
     def bounds(self, part: int) -> tuple[Array, float]:
         """Least errors of the elements (d, d) of a part, and of its trace; 0 in a long run.
