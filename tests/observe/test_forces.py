@@ -285,7 +285,7 @@ class Slowing:
         return self.mass, np.array([self.mean + self.momentum, 0.0]), 0.0
 
 
-@pytest.mark.parametrize("relaxations", [3, 12])
+@pytest.mark.parametrize("relaxations", [3, 12, 22])
 def test_error_bars_of_flow_rates_hold_in_short_runs(make_case, relaxations):
     case, runs = make_case((12, 12), [FlowRate()], [Disk(centre=[6, 6], radius=3)], **PUSHED), 60
     values, errors = [], []

@@ -21,9 +21,8 @@ from mesokit.method.mpcd.expected.molecules import (
     substep_of,
 )
 from mesokit.method.mpcd.observe.shared.decay import fit_curve, normalised
-from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
 from mesokit.method.mpcd.observe.transverse_modes import FEWEST, LOWEST, decaying
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import noted
 from mesokit.seam.observable import Observable, State, pack, unpack

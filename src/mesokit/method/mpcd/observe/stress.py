@@ -16,9 +16,9 @@ from mesokit.method.mpcd.expected.molecules import (
     springs_in,
     stress_in_shear,
 )
-from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH, kept
+from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable
 from mesokit.seam.result import Array, Comparison, Result

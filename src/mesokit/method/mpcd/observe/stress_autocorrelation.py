@@ -13,9 +13,8 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import shear_note
 from mesokit.method.mpcd.expected.rheometer import modes_of_stress
-from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
 from mesokit.method.mpcd.observe.stress import UNIT
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.observable import BlockAccumulator, Observable

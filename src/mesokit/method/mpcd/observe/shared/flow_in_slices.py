@@ -14,7 +14,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.result import Comparison
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 VISCOSITY = "a^2/tau"
-ENOUGH = 100  # relaxation times of a flow, for an error bar
 
 
 def refuse_kinds(kind: int | str | None) -> None:

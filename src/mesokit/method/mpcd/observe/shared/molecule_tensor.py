@@ -16,15 +16,13 @@ from numpy.typing import NDArray
 from mesokit.method.mpcd.expected.molecules import least_times_of
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
 from mesokit.observe.shared.over_molecules import OwnMeans
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.observable import BlockAccumulator, Observable, State, pack, unpack
 from mesokit.seam.result import Array
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-
-ENOUGH = 30.0  # relaxation times of the slowest mode, for an error bar by blocking
 
 
 def kept(times: float) -> float:
