@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from mesokit.case.describe.digits import two_digits
 from mesokit.observe.shared.caveats import BUILDS_UP, LOWER_BOUND, STEADY
-from mesokit.observe.shared.short_run import CHI_SQUARE, bounded
+from mesokit.observe.shared.short_run import CHI_SQUARE, bounded, without_error
 from mesokit.seam.in_units import in_units
 from mesokit.seam.method import BuildUp, method_of
 from mesokit.seam.observable import Accumulator
@@ -34,7 +34,8 @@ class OfFlow(Protocol):
 def result_of(accumulator: Accumulator, case: Case) -> Result:
     """What an accumulator says, with comparisons marked where the flow had not built up, or where
     the run is too short for error bars."""
-    result = in_units(bounded(accumulator.result(), accumulator), case)
+    found = without_error(bounded(accumulator.result(), accumulator), accumulator)
+    result = in_units(found, case)
     observable = next((one for one in case.observe if one.label == result.name), None)
     if observable is None:
         return result

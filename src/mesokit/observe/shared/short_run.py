@@ -9,8 +9,15 @@ import numpy as np
 
 from mesokit.observe.shared.caveats import FEW_SAMPLES, LOWER_BOUND
 from mesokit.seam.result import Comparison, Result
-from mesokit.statistics import FEWEST_PIECES, Blocks, correlated
+from mesokit.statistics import (
+    FEWEST_BLOCKS,
+    FEWEST_PIECES,
+    Blocks,
+    TimeSeries,
+    correlated,
+)
 
+NO_ERROR = "no error bar"
 MOST = 0.5  # of the means of an observable that may have few independent pieces
 NOTE = f"{LOWER_BOUND}: samples amount to less than {FEWEST_PIECES} independent ones"
 CHI_SQUARE = "chi-square"  # in the name of a number that is one
@@ -33,6 +40,28 @@ def bounded(result: Result, accumulator: Any) -> Result:
         result,
         comparisons=tuple(
             _noted(c, note or (few if CHI_SQUARE in c.what or blocks.count < VERY_FEW else ""))
+            for c in result.comparisons
+        ),
+    )
+
+
+def without_error(result: Result, accumulator: Any) -> Result:
+    """A result whose comparisons say why they have no error bar; counts need none."""
+    blocks, rows = getattr(accumulator, "blocks", None), getattr(accumulator, "series", None)
+    if isinstance(blocks, Blocks):
+        few = f"{blocks.count} sample{'s' * (blocks.count != 1)}"
+        note = f"{NO_ERROR}: of {few}" if blocks.count < FEWEST_BLOCKS else NO_ERROR
+    elif isinstance(rows, TimeSeries) and rows.series < FEWEST_BLOCKS:
+        runs = "one run" if rows.series == 1 else f"{rows.series} runs"
+        note = f"{NO_ERROR}: {runs}; --seeds {FEWEST_BLOCKS} or more give one"
+    else:
+        note = NO_ERROR
+    return dataclasses.replace(
+        result,
+        comparisons=tuple(
+            dataclasses.replace(c, note="; ".join(filter(None, [c.note, note])))
+            if np.isnan(c.error) and np.isfinite(c.measured) and c.measured % 1 != 0
+            else c
             for c in result.comparisons
         ),
     )
