@@ -16,12 +16,15 @@ from mesokit import (
     FlowRate,
     Fluid,
     Forces,
+    MaxwellBoltzmann,
     Plates,
     Run,
     Simulation,
     Study,
+    Surface,
     Uniform,
     VelocityProfile,
+    WallStress,
 )
 from mesokit.io.tables import record
 from mesokit.method.mpcd.observe.shared.flow_memory import flow_memory
@@ -251,3 +254,98 @@ def test_the_time_of_a_flow_from_rest_is_that_of_its_exponential(time, had, leng
     found = flow_memory(case, 0, momentum, blocks, every=10)
     assert found.time == pytest.approx(time, rel=5e-3)
     assert found.times == pytest.approx(length / time, rel=5e-3)
+
+
+def test_a_flow_that_builds_up_leaves_the_pressure_on_plates():
+    """The pressure is that of the fluid at rest from the start; the drag is not."""
+    case = Case(
+        run=Run(steps=160, warmup=10, seed=4),
+        box=Box([40, 20]),
+        fluid=Fluid(density=7, thermostat=MaxwellBoltzmann()),
+        walls=[Plates("y", upper=Surface(velocity=(0.3, 0)))],
+        observe=[WallStress(every=1)],
+    )
+    simulation = Simulation(case, threads=1)
+    simulation.run()
+    found = simulation["wall-stress"].comparisons
+    drags, pressures = (
+        [one for one in found if one.what.startswith(what)] for what in ("drag", "pressure")
+    )
+    assert len(drags) == len(pressures) == 2
+    assert all(one.note.startswith(NOTE) for one in drags)
+    assert all(one.steady and abs(one.deviation) < 4 for one in pressures)
+
+
+def test_a_pressure_that_changes_is_not_steady():
+    """By its own samples, whatever the flow does."""
+    case = Case(
+        run=Run(steps=640),
+        box=Box([10, 10]),
+        fluid=Fluid(),
+        walls=[Plates("y")],
+        observe=[WallStress(every=1)],
+    )
+    accumulator, noise = case.observe[0].accumulator(case), np.random.default_rng(2)
+    for n in range(640):
+        pressure = 10 + 0.002 * n + 0.1 * noise.normal()
+        accumulator.blocks.add(np.array([[0.0, -pressure], [0.0, pressure]]))
+    found = result_of(accumulator, case).comparisons
+    assert found and all(one.note.startswith("not steady: pressure on") for one in found)
+
+
+def test_pooled_samples_decide_whether_a_flow_past_an_obstacle_has_built_up(tmp_path):
+    """The momentum of one run may be off by chance; the words are those of one estimate."""
+    case = Case(
+        run=Run(steps=400, warmup=160),
+        box=Box([20, 20]),
+        fluid=Fluid(force=Uniform([0.02, 0.0]), thermostat=MaxwellBoltzmann()),
+        walls=[Disk([10, 10], 4)],
+        observe=[FlowRate(), Forces(length=8, every=5)],
+    )
+    study = Study(case, None, 3, output=tmp_path / "study")
+    study.run(threads=1)
+    rows = study.table()
+    for name in ("flow-rate", "forces"):
+        notes = [row.number.note for row in rows if row.observable == name]
+        said = {note.split("; ")[0] for note in notes}
+        assert len(notes) >= 3 and len(said) == 1
+        assert "steady flow" not in " ".join(notes)
+        assert said.pop().startswith("not steady: the flow needs about ")
+    words = {row.number.note.split(" steps")[0] for row in rows}
+    assert len(words) == 1  # two digits, and one momentum
+
+
+@pytest.mark.parametrize(
+    ("pooled", "runs", "note"),
+    [
+        ("a law", ["not steady: the flow needs about 1200 steps; a law", ""], "a law"),
+        ("a law", ["not steady: the flow still lacked 7 % of its speed"] * 3, "a law"),
+        (
+            "not steady: the flow needs about 800 steps",
+            ["approximate: thin; a law", "not steady: the flow needs about 830 steps"],
+            "not steady: the flow needs about 800 steps; approximate: thin",
+        ),
+    ],
+)
+def test_the_flow_of_all_runs_decides_for_the_pooled_number(pooled, runs, note):
+    (found,) = with_those_of(*numbers_with(pooled), numbers_with(*runs)).comparisons
+    assert found.note == note
+
+
+@pytest.mark.parametrize("runs", [1, 3])
+def test_relaxation_times_are_those_of_each_run(runs):
+    """Here a speed of 0.1 along plates 30 apart, for 1200 steps."""
+    case = dataclasses.replace(flow(1200, 6000), observe=[FlowRate(every=10)])
+    pooled, fluid = case.observe[0].accumulator(case), FakeFluid(case)
+    for run in range(runs):
+        accumulator = pooled if run == 0 else case.observe[0].accumulator(case)
+        noise = np.random.default_rng(run).normal(0.1, 0.02, 120)
+        for n, speed in enumerate(noise + 0.1 - noise.mean()):
+            fluid.step = 6000 + 10 * (n + 1)
+            fluid.totals = lambda v=speed: (fluid.n, fluid.m.sum() * np.array([v, 0.0]), 0.0)
+            accumulator.observe(fluid)
+        if run:
+            pooled.pool(accumulator)
+    note = result_of(pooled, case).comparisons[0].note
+    each = "the" if runs == 1 else "each"
+    assert f"{each} run has 6 relaxation times" in note  # 120 tau over 0.1/0.005

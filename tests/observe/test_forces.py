@@ -227,6 +227,29 @@ def flowing(case, observable, velocity, samples=300):
     return accumulator.result()
 
 
+@pytest.mark.parametrize(("samples", "short"), [(200, True), (3000, False)])
+def test_shares_and_coefficients_of_a_short_run_have_its_caveat(make_case, samples, short):
+    """That of the flow rate; the error of the whole force is known in a run of any length."""
+    walls = [Plates(axis="y"), Disk(centre=[8, 4], radius=1.5, name="post")]
+    given = Forces(length=3.0, speed=0.25, every=10)
+    case = make_case((16, 8), [given], walls, **PUSHED)
+    case = dataclasses.replace(case, run=LATE)
+
+    def moving(r):
+        return np.full(r.shape, (0.25, 0.0))
+
+    mean = [[3.0, -80.0, 0.0], [3.0, 80.0, 0.0], [6.0, 0.0, 2.0]]
+    found = by_name(fed(case, given, mean, samples, noise=0.01, field=moving))
+    words = "error bar is a lower bound: the run has "
+    notes = {what: one.note.partition(words)[2] for what, one in found.items()}
+    marked = {what for what, times in notes.items() if times}
+    assert all(float(notes[what].split()[0]) == pytest.approx(8, rel=0.1) for what in marked)
+    flow = {"Reynolds number", "drag coefficient of post", "lift coefficient of post"}
+    shares = {what for what in found if what.startswith("share of")}
+    assert len(shares) == 3 and marked == (flow | shares if short else set())
+    assert "force on all solids along x" in found
+
+
 def test_flow_rate_counts_the_solids(make_case):
     case = make_case((12, 12), [FlowRate()], [Disk(centre=[6, 6], radius=3)], **PUSHED)
     case = dataclasses.replace(case, run=LATE)
@@ -262,7 +285,7 @@ class Slowing:
         return self.mass, np.array([self.mean + self.momentum, 0.0]), 0.0
 
 
-@pytest.mark.parametrize("relaxations", [3, 12])
+@pytest.mark.parametrize("relaxations", [3, 12, 22])
 def test_error_bars_of_flow_rates_hold_in_short_runs(make_case, relaxations):
     case, runs = make_case((12, 12), [FlowRate()], [Disk(centre=[6, 6], radius=3)], **PUSHED), 60
     values, errors = [], []

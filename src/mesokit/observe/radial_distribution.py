@@ -15,6 +15,7 @@ from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
 from mesokit.observe.shared.pairs import OwnPairs, count_pairs, count_within, shells
 from mesokit.observe.shared.periodic import OF, periodic_all_over
+from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import method_of
@@ -323,7 +324,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         times = self.times()
         if not 0 < times < ENOUGH:
             return ""
-        return f"error bar is a lower bound: the run has {times:.2g} diffusion times of the reach"
+        return of_relaxations(times, self.blocks.series, "diffusion times of the reach")
 
 
 def _unless_fixed(value: Array | float, error: Array | float) -> Array:

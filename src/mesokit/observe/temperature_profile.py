@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +51,7 @@ class TemperatureProfile(Profile):
     """
 
     quantity: Literal["temperature-profile"] = tag("temperature-profile")
+    at_any_kT: ClassVar[tuple[str, ...]] = ("",)
     kind: int | str | None = param(None, doc=KIND)
 
     def theory(self, case: Case) -> TemperatureInSlices:

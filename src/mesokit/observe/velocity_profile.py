@@ -53,6 +53,7 @@ class VelocityProfile(Profile):
     quantity: Literal["velocity-profile"] = tag("velocity-profile")
     asks_transport: ClassVar[bool] = True
     of_built_up_flow: ClassVar[bool] = True
+    at_any_kT: ClassVar[tuple[str, ...]] = ("shear rate", "chi-square")
     component: Axis | None = param(None, doc="axis of the velocity (that of the flow unless said)")
     kind: int | str | None = param(None, doc=KIND)
 

@@ -175,6 +175,9 @@ class Method:
         What its units are in SI; without it, a case must not have the section `[units]`.
     build_up : function of a case, optional
         How its flow comes from rest to its steady state (`BuildUp`), or None.
+    heat_caveat : function of a case and a number of steps, warm-up included, optional
+        The caveat of numbers that depend on the temperature, where so many steps heat the
+        particles far above that of theory; "" elsewhere.
     units : Units, optional
         What lengths, times and masses are counted in; unless said, the unit of the case.
     check_ranks : function of a case and a number of ranks, optional
@@ -200,6 +203,7 @@ class Method:
     log: Callable[[Case], Columns[Any]] = lambda case: NO_COLUMNS
     si: Callable[[Case], InSI] | None = None
     build_up: Callable[[Case], BuildUp | None] | None = None
+    heat_caveat: Callable[[Case, int], str] = lambda case, steps: ""
     units: Units = Units()  # noqa: RUF009  a tuple of names
     check_ranks: Callable[[Case, int], None] | None = None
 

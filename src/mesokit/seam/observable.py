@@ -58,6 +58,9 @@ class Observable(ABC):  # noqa: B024  # `accumulator` is abstract
     # whether its theory needs the transport coefficients of the fluid as it is, molecules and all
     asks_transport: ClassVar[bool] = False
     of_built_up_flow: ClassVar[bool] = False  # whether its theory is of the steady flow
+    # words of the names of numbers that do not depend on the flow, or on kT; "" is in all names
+    in_any_flow: ClassVar[tuple[str, ...]] = ()
+    at_any_kT: ClassVar[tuple[str, ...]] = ()
     measures: ClassVar[tuple[str, ...]] = ()  # "stress" or "walls": what the step has to sum for it
     every: int = option(default=10, doc="steps between two samples", ge=1, kw_only=True)
     name: str | None = option(

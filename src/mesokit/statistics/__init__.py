@@ -1,6 +1,7 @@
 """Running averages, correlations and fits, each with an honest error bar, in bounded memory."""
 
 from mesokit.statistics.blocking import (
+    FEWEST_BLOCKS,
     FEWEST_PIECES,
     blocking_error,
     correlated,
@@ -33,6 +34,7 @@ from mesokit.statistics.tally import Tally
 from mesokit.statistics.time_series import TimeSeries
 
 __all__ = [
+    "FEWEST_BLOCKS",
     "FEWEST_PIECES",
     "Blocks",
     "ChiSquare",

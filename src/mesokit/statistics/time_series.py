@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesokit.statistics.blocking import FEWEST_BLOCKS
+
 
 class TimeSeries:
     """Rows of numbers in time; neighbours are averaged in pairs whenever the memory is full.
@@ -77,13 +79,39 @@ class TimeSeries:
         """The complete rows, oldest first, (n, width)."""
         return self._pooled()[:, 1:]
 
+    @property
+    def series(self) -> int:
+        """The number of independent series that are pooled in it."""
+        return 1 + len(self._others)
+
+    def error(self) -> NDArray[np.float64]:
+        """Standard errors of `values`, (n, width), by how the pooled series scatter; nan for fewer
+        than 4.
+
+        >>> series = [TimeSeries(1) for _ in range(4)]
+        >>> for one, value in zip(series, (1, 2, 3, 6)):
+        ...     one.add(0, [value])
+        >>> for other in series[1:]:
+        ...     series[0].pool(other)
+        >>> float(series[0].values()[0, 0]), round(float(series[0].error()[0, 0]), 3)
+        (3.0, 1.08)
+        """
+        rows = self._aligned()[:, :, 1:]
+        if len(rows) < FEWEST_BLOCKS:
+            return np.full(rows.shape[1:], np.nan)
+        return np.asarray(rows.std(axis=0, ddof=1) / np.sqrt(len(rows)))
+
     def _pooled(self) -> NDArray[np.float64]:
         """The mean of all series."""
         if not self._others:
             return self._rows[: self._full].copy()
+        return np.asarray(self._aligned().mean(axis=0))
+
+    def _aligned(self) -> NDArray[np.float64]:
+        """The rows of all series, (series, n, 1 + width), as far as the shortest goes."""
         all_rows = [series._coarse(self.stride) for series in (self, *self._others)]
         shortest = min(map(len, all_rows))
-        return np.asarray(np.mean([rows[:shortest] for rows in all_rows], axis=0))
+        return np.array([rows[:shortest] for rows in all_rows])
 
     def _coarse(self, stride: int) -> NDArray[np.float64]:
         """Complete rows that are means over `stride` samples, a power of two times its own."""

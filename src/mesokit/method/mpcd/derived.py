@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.describe.digits import two_digits
 from mesokit.case.trajectory import stored_bytes
 from mesokit.geometry.shape.plates import Plates
 from mesokit.method.mpcd.expected import recognise, setting
@@ -18,10 +19,12 @@ from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 from mesokit.method.mpcd.warnings import cautions
 from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import BuildUp
+from mesokit.seam.result import NOT_STEADY
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
+HOTTER = 0.05  # relative rise of kT from which on theory at kT is of another fluid
 WITHOUT = ", as without obstacles"  # said of a flow
 FIRST_ZERO = 2.404825557695773  # of the Bessel function J_0: the slowest mode of a pipe
 # factors of time, rate
@@ -92,7 +95,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     memory += _cells_bytes(case, beads, threads)
     checkpoint = case.particles * BYTES[f"checkpoint {dimension}D"]
     memory += max(checkpoint, bool(case.observe) * BYTES["figures"])
-    heated = _heating(case, across)
+    heated = _heating(case, across, steps)
     numbers = Derived(
         particles=case.particles,
         particle_steps=case.particles * steps,
@@ -231,13 +234,31 @@ def _steady_time(case: Case, across: int, viscosity: float) -> float:
     return 1 / (viscosity * _wavenumber(case, across) ** 2)
 
 
-def _heating(case: Case, across: int) -> tuple[float, bool] | None:
-    """Relative rise of the temperature by friction over the run, and whether that is a bound, as
-    walls cool the fluid and nobody knows how much; None if held."""
+def heat_caveat(case: Case, steps: int) -> str:
+    """Where friction makes the fluid much hotter than the kT of the case in so many steps, warm-up
+    included: a caveat of numbers that depend on kT; "" elsewhere."""
+    across = _flow(case)[1]
+    found = _heating(case, across, steps)
+    if found is None or found[0] <= HOTTER:
+        return ""
+    (rise, most), kT = found, float(case.fluid.kT)
+    hot = f"{kT + float(two_digits(kT * rise)):.4g}"
+    if most:
+        return f"approximate: viscous heating raises kT from {kT:.4g} to {hot} at most"
+    law = heating(case, across)
+    before = law.after(case.run.warmup * case.fluid.timestep) if law else 0.0
+    if law and law.steady is not None and rise - before < HOTTER:
+        return f"approximate: viscous heating holds kT at about {hot}"
+    return f"{NOT_STEADY}: viscous heating raises kT from {kT:.4g} to about {hot} in the run"
+
+
+def _heating(case: Case, across: int, steps: int) -> tuple[float, bool] | None:
+    """Relative rise of the temperature by friction in so many steps, and whether that is a bound,
+    as walls cool the fluid and nobody knows how much; None if held."""
     found = heating(case, across)
     if found is None:
         return None
-    time = (case.run.warmup + case.run.steps) * case.fluid.timestep
+    time = steps * case.fluid.timestep
     cooled = any(
         surface.rule == "diffuse" or (surface.rule == "no-slip" and wall.virtual != "none")
         for wall in case.walls

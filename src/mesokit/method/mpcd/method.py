@@ -69,6 +69,12 @@ def _build_up(case: Case) -> BuildUp | None:
     return build_up(case)
 
 
+def _heat_caveat(case: Case, steps: int) -> str:
+    from mesokit.method.mpcd.derived import heat_caveat
+
+    return heat_caveat(case, steps)
+
+
 def _check_ranks(case: Case, ranks: int) -> None:
     """What needs all particles in one memory, and a case with fewer cells than ranks."""
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
@@ -169,6 +175,7 @@ METHOD = Method(
     log=columns,
     si=_si,
     build_up=_build_up,
+    heat_caveat=_heat_caveat,
     units=CELLS,
     check_ranks=_check_ranks,
 )

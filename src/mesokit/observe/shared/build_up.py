@@ -7,8 +7,9 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
-from mesokit.observe.shared.caveats import LOWER_BOUND, STEADY
-from mesokit.observe.shared.short_run import CHI_SQUARE, bounded
+from mesokit.case.describe.digits import two_digits
+from mesokit.observe.shared.caveats import BUILDS_UP, LOWER_BOUND, STEADY
+from mesokit.observe.shared.short_run import CHI_SQUARE, bounded, without_error
 from mesokit.seam.in_units import in_units
 from mesokit.seam.method import BuildUp, method_of
 from mesokit.seam.observable import Accumulator
@@ -33,41 +34,70 @@ class OfFlow(Protocol):
 def result_of(accumulator: Accumulator, case: Case) -> Result:
     """What an accumulator says, with comparisons marked where the flow had not built up, or where
     the run is too short for error bars."""
-    result = in_units(bounded(accumulator.result(), accumulator), case)
+    found = without_error(bounded(accumulator.result(), accumulator), accumulator)
+    result = in_units(found, case)
     observable = next((one for one in case.observe if one.label == result.name), None)
-    if observable is None or not observable.of_built_up_flow:
+    if observable is None:
         return result
-    note = _too_early(accumulator, result, case, observable.every) or _drift(accumulator, result)
+    length = _length(accumulator, result) * observable.every
+    if observable.of_built_up_flow:
+        early = _too_early(accumulator, result, case, length, observable.in_any_flow)
+        drift = "" if early else _drift(accumulator, result)
+        result = _marked(_marked(result, early, observable.in_any_flow), drift)
+    steps = case.run.warmup + min(length, case.run.steps)
+    heat = method_of(case).heat_caveat(case, steps)
+    return _marked(result, heat, observable.at_any_kT)
+
+
+def _marked(result: Result, note: str, but: tuple[str, ...] = ()) -> Result:
+    """With a note in front of those of its comparisons, but of those with such words in their
+    names, or that are not steady for another reason."""
     if not note:
         return result
     return dataclasses.replace(
         result,
         comparisons=tuple(
-            dataclasses.replace(c, note="; ".join([note, *_of_theory(c)]))
+            c
+            if not c.steady or _has(c, but)
+            else dataclasses.replace(c, note="; ".join([note, *_of_theory(c, note)]))
             for c in result.comparisons
         ),
     )
 
 
-def _too_early(accumulator: Accumulator, result: Result, case: Case, every: int) -> str:
-    """That samples began before the flow had built up, where the method knows how long it takes, or
-    the flow itself tells."""
+def _has(comparison: Comparison, words: tuple[str, ...]) -> bool:
+    """Whether any of these words are in its name."""
+    return any(one in comparison.what for one in words)
+
+
+def _length(accumulator: Accumulator, result: Result) -> int:
+    """Samples of each run that is pooled in it."""
+    series = getattr(getattr(accumulator, "blocks", None), "series", 1)
+    return int(result.samples // series)
+
+
+def _too_early(
+    accumulator: Accumulator, result: Result, case: Case, length: int, but: tuple[str, ...]
+) -> str:
+    """That samples began before the flow had built up, where the method has that time, or it
+    follows from the flow; by all numbers but those with such words in their names."""
     method = method_of(case)
     build_up = method.build_up(case) if method.build_up is not None else None
-    if build_up is None and isinstance(accumulator, OfFlow):
+    estimated = build_up is None and isinstance(accumulator, OfFlow)
+    if estimated and isinstance(accumulator, OfFlow):
         build_up = accumulator.build_up()
     if build_up is None:
         return ""
-    series = getattr(getattr(accumulator, "blocks", None), "series", 1)  # pooled runs
-    length = result.samples // series * every
     lacks = build_up.lacks(length) if length else 0.0
     enough = build_up.had >= build_up.need  # then only an error bar that is known tells more
-    seen = [c for c in result.comparisons if not (enough and LOWER_BOUND in c.note)]
+    of_flow = [c for c in result.comparisons if not _has(c, but)]
+    seen = [c for c in of_flow if not (enough and LOWER_BOUND in c.note)]
     if not any(_is_off(c, lacks) for c in seen):
         return ""
     if enough:
-        return f"{NOT_STEADY}: the flow still lacked {100 * lacks:.2g} % of its speed"
-    return f"{NOT_STEADY}: the flow needs {build_up.need} steps before samples, had {build_up.had}"
+        return f"{BUILDS_UP}still lacked {100 * lacks:.2g} % of its speed"
+    need = f"about {two_digits(build_up.need)}" if estimated else f"{build_up.need}"
+    return f"{BUILDS_UP}needs {need} steps before samples, had {build_up.had}"
 
 
 def _drift(accumulator: Accumulator, result: Result) -> str:
@@ -91,11 +121,13 @@ def _drift(accumulator: Accumulator, result: Result) -> str:
     return ""
 
 
-def _of_theory(comparison: Comparison) -> list[str]:
-    """What its note says of the theory, but that the flow is steady; error bars of a flow that
-    builds up are another matter."""
-    parts = comparison.note.split("; ")
-    return [one for one in parts if one and one not in STEADY and not one.startswith(LOWER_BOUND)]
+def _of_theory(comparison: Comparison, caveat: str) -> list[str]:
+    """What its note says beside a caveat: of what is not steady nothing of steady flow, and nothing
+    of error bars, which are another matter there."""
+    parts = [part for part in comparison.note.split("; ") if part]
+    if not caveat.startswith(NOT_STEADY):
+        return parts
+    return [one for one in parts if one not in STEADY and not one.startswith(LOWER_BOUND)]
 
 
 def _is_off(comparison: Comparison, share: float) -> bool:

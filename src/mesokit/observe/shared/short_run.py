@@ -9,12 +9,23 @@ import numpy as np
 
 from mesokit.observe.shared.caveats import FEW_SAMPLES, LOWER_BOUND
 from mesokit.seam.result import Comparison, Result
-from mesokit.statistics import FEWEST_PIECES, Blocks, correlated
+from mesokit.statistics import (
+    FEWEST_BLOCKS,
+    FEWEST_PIECES,
+    Blocks,
+    TimeSeries,
+    correlated,
+)
 
+NO_ERROR = "no error bar"
 MOST = 0.5  # of the means of an observable that may have few independent pieces
 NOTE = f"{LOWER_BOUND}: samples amount to less than {FEWEST_PIECES} independent ones"
 CHI_SQUARE = "chi-square"  # in the name of a number that is one
 SAMPLES = 128  # of fewer in a row, blocks of time hardly tell how long they are correlated
+# Relaxation times of a flow, or of molecules, from which on blocks of time give an error. Measured
+# with 300 series that decay as an exponential: error bars are 40, 18, 8 and 3 % too small on
+# average in 5, 10, 20 and 30 of these times.
+ENOUGH = 30.0
 VERY_FEW = 8  # samples: of fewer no error bar is known to within its half
 
 
@@ -34,13 +45,38 @@ def bounded(result: Result, accumulator: Any) -> Result:
     )
 
 
-def of_relaxations(times: float) -> str:
-    """The caveat of a run of so many relaxation times of what it measures.
+def without_error(result: Result, accumulator: Any) -> Result:
+    """A result whose comparisons say why they have no error bar; counts need none."""
+    blocks, rows = getattr(accumulator, "blocks", None), getattr(accumulator, "series", None)
+    if isinstance(blocks, Blocks):
+        few = f"{blocks.count} sample{'s' * (blocks.count != 1)}"
+        note = f"{NO_ERROR}: of {few}" if blocks.count < FEWEST_BLOCKS else NO_ERROR
+    elif isinstance(rows, TimeSeries) and rows.series < FEWEST_BLOCKS:
+        runs = "one run" if rows.series == 1 else f"{rows.series} runs"
+        note = f"{NO_ERROR}: {runs}; --seeds {FEWEST_BLOCKS} or more give one"
+    else:
+        note = NO_ERROR
+    return dataclasses.replace(
+        result,
+        comparisons=tuple(
+            dataclasses.replace(c, note="; ".join(filter(None, [c.note, note])))
+            if np.isnan(c.error) and np.isfinite(c.measured) and c.measured % 1 != 0
+            else c
+            for c in result.comparisons
+        ),
+    )
+
+
+def of_relaxations(times: float, runs: int = 1, of: str = "relaxation times") -> str:
+    """The caveat of a run of so many relaxation times of what it measures, or of several runs that
+    have as many each.
 
     >>> of_relaxations(2.345)
     'error bar is a lower bound: the run has 2.3 relaxation times'
+    >>> of_relaxations(12.0, 8, "stress times")
+    'error bar is a lower bound: each run has 12 stress times'
     """
-    return f"{LOWER_BOUND}: the run has {times:.2g} relaxation times"
+    return f"{LOWER_BOUND}: {'each' if runs > 1 else 'the'} run has {times:.2g} {of}"
 
 
 def _noted(comparison: Comparison, note: str) -> Comparison:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -53,7 +54,7 @@ def heating(case: Case, across: int) -> Heating | None:
 
     About solids that move, of a flow that falls to zero over the whole box: they heat it no less.
     """
-    known = setting.transport(case)
+    known = _coefficients(case)
     if setting.isothermal(case) or known is None:
         return None
     pipe, length = recognise.pipe(case), float(case.box.size[across])
@@ -61,12 +62,35 @@ def heating(case: Case, across: int) -> Heating | None:
         heat = _friction_in_pipe(case, pipe, known.viscosity)
     else:
         heat = float(np.mean(_friction(case, across, known.viscosity)))
+    heat += setting.mass_density(case) * known.viscosity * _changing_shear(case)
     moved = known.viscosity * (setting.surface_speed(case) / length) ** 2
     fluid = case.fluid
     mean = max(heat / fluid.density, fluid.mass * moved)
     rise = temperature_rise(case)
     steady = None if rise is None else float(np.mean(rise)) / fluid.kT
     return Heating(2 / case.box.dimension * mean / fluid.kT, steady)
+
+
+def _coefficients(case: Case) -> theory.Transport | None:
+    """Of the fluid; of one with solutes or bonds, which have more friction, those without them."""
+    known = setting.transport(case) or setting.solvent(case)
+    fluid = case.fluid
+    if known is None and fluid.molecule is not None and fluid.collision.acts and not fluid.mixed:
+        with contextlib.suppress(ValueError):
+            return fluid.collision.transport(setting.gas(case))
+    return known
+
+
+def _changing_shear(case: Case) -> float:
+    """Mean square of the shear rate of a box where it changes in time, or where a force acts too;
+    0 where the flow has a theory, and between walls, which hold it back."""
+    history = case.box.history
+    if history is None or case.walls or setting.flow(case, 0).profile is not None:
+        return 0.0
+    time = (case.run.warmup + case.run.steps) * float(case.fluid.timestep)
+    time = min(time, history.repeats_after or time)
+    rates = [history.rate_at((i + 0.5) * time / POINTS) for i in range(POINTS)]
+    return float(np.mean(np.square(rates)))
 
 
 def temperature_rise(case: Case) -> Array | None:

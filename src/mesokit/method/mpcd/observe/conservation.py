@@ -37,6 +37,7 @@ class Conservation(Observable):
     quantity: Literal["conservation"] = tag("conservation")
     in_open_box: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
+    at_any_kT: ClassVar[tuple[str, ...]] = ("",)
 
 
 @accumulator_of(Conservation)

@@ -50,6 +50,7 @@ class Forces(Observable):
 
     quantity: Literal["forces"] = tag("forces")
     of_built_up_flow: ClassVar[bool] = True
+    at_any_kT: ClassVar[tuple[str, ...]] = ("force on all solids",)
     asks_transport: ClassVar[bool] = True
     measures: ClassVar[tuple[str, ...]] = ("walls",)
     length: float | None = param(
@@ -243,15 +244,18 @@ class ForcesAccumulator(BlockAccumulator):
             every = np.zeros(mean.value.shape)
             every[force[:, axis]] = 1.0
             value, error = mean.scalar(every @ mean.value, every)
-            known = self.balanced_error()
-            error = known if np.isfinite(known) and np.isfinite(total[axis]) else error
+            known, short = self.balanced_error(), self.flow_memory(axis).note
             note = "the force on the fluid; steady flow"
             if np.isnan(total[axis]):
                 note = "nothing holds the fluid"
+            elif np.isfinite(known):  # however short the run
+                error = known
+            else:
+                note = "; ".join(filter(None, (note, short)))
             what = f"force on all solids along {AXES[axis]}"
             found.append(Comparison(what, value, error, float(total[axis]), FORCE, note))
             if few and len(self.bodies) > 1 and np.isfinite(total[axis]):
-                found += self.shares(mean, force[:, axis], axis, expected)
+                found += self.shares(mean, force[:, axis], axis, expected, short)
         for body, column in np.argwhere(expected[:, self.dimension :] != 0) if few else ():
             place = body, self.dimension + column
             if np.isfinite(expected[place]):
@@ -266,17 +270,18 @@ class ForcesAccumulator(BlockAccumulator):
         return found
 
     def shares(
-        self, mean: Estimate, places: NDArray[np.intp], axis: int, expected: Array
+        self, mean: Estimate, places: NDArray[np.intp], axis: int, expected: Array, short: str
     ) -> list[Comparison]:
-        """What part of the force on the fluid each solid takes."""
+        """What part of the force on the fluid each solid takes; `short`: the caveat of the run."""
         total, found = self.total()[axis], []
+        note = "; ".join(filter(None, ("of the force on the fluid", short)))
         for body, place in enumerate(places):
             gradient = np.zeros(mean.value.shape)
             gradient[place] = 100.0 / total
             value, error = mean.scalar(gradient @ mean.value, gradient)
             what = f"share of {self.bodies[body]} along {AXES[axis]}"
             known = 100.0 * float(expected[body, axis] / total)
-            found.append(Comparison(what, value, error, known, "%", "of the force on the fluid"))
+            found.append(Comparison(what, value, error, known, "%", note))
         return found
 
     def coefficient(self) -> float:
@@ -344,11 +349,11 @@ class ForcesAccumulator(BlockAccumulator):
         """Reynolds number, drag and lift, with the error of the speed where that is measured."""
         given, flow = self.observable, self.along()
         assert given.length is not None
-        speed, spread, short = (given.speed, 0.0, "") if given.speed else self.speed()
-        note = f"U = {speed:g} a/tau"
-        if given.speed is None:
-            note = f"U = {with_error(abs(speed), spread)} a/tau, the mean superficial velocity"
-            note = "; ".join(filter(None, (note, short)))
+        speed, spread, short = self.speed()
+        note = f"U = {with_error(abs(speed), spread)} a/tau, the mean superficial velocity"
+        if given.speed is not None:
+            speed, spread, note = given.speed, 0.0, f"U = {given.speed:g} a/tau"
+        note = "; ".join(filter(None, (note, short)))
         if speed == 0:
             return []
         transport, found = setting.transport(self.case), []

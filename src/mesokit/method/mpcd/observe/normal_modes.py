@@ -14,9 +14,8 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import mode_times_of, modes_of, springs_of, substep_of
 from mesokit.method.mpcd.expected.selection import KIND, beads_of, molecule_of
 from mesokit.method.mpcd.observe.shared.decay import fit_curve, normalised
-from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
 from mesokit.method.mpcd.observe.transverse_modes import FEWEST, LOWEST, decaying
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import noted
 from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
@@ -145,7 +144,9 @@ class NormalModesAccumulator:
                 what, run, short = f"normal-mode time {p + 1}", self.relaxations(correlator), ""
                 if 0 < run < ENOUGH:  # the rate of an exponential memory has this error at least
                     seen = len(self.beads) * self.case.box.dimension * run
-                    error, short = max(error, value * (2 / seen) ** 0.5), of_relaxations(run)
+                    error = max(error, value * (2 / seen) ** 0.5)
+                    runs = correlator.series
+                    short = of_relaxations(run / runs, runs)
                 note_of_time = noted(value, note, short)
                 found.append(Comparison(what, value, error, expected, "tau", note_of_time))
         for p, correlator in enumerate(self.correlators[:SHOWN]):
@@ -157,7 +158,8 @@ class NormalModesAccumulator:
                 if 0 < times_of_run < ENOUGH:  # independent components tell what blocks do not
                     seen = len(self.beads) * d * (1 + times_of_run)
                     error = max(error, value * (2 / seen) ** 0.5)
-                    short = of_relaxations(times_of_run)
+                    runs = correlator.series
+                    short = of_relaxations(times_of_run / runs, runs)
                 found.append(
                     Comparison(
                         f"mean square of mode {p + 1}",
@@ -171,7 +173,7 @@ class NormalModesAccumulator:
         return found
 
     def relaxations(self, correlator: MultipleTau) -> float:
-        """How many relaxation times of a mode the run lasts; 0 where it is not known."""
+        """How many relaxation times of a mode all runs last; 0 where it is not known."""
         measured = self.relaxation_time(correlator)
         if measured is None or not measured[0] > 0:
             return 0.0

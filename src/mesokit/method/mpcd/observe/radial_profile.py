@@ -21,7 +21,7 @@ from mesokit.method.mpcd.observe.shared.shells import (
     shell_edges,
     shell_volumes,
 )
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
@@ -29,7 +29,6 @@ from mesokit.seam.result import Comparison, Result
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
-ENOUGH = 100  # relaxation times of a flow, for an error bar
 COMPONENTS = ("radial", "azimuthal", "axial")
 UNITS = {"density": "1/a^d", "temperature": "m a^2/tau^2"}
 
@@ -214,10 +213,11 @@ class RadialProfileAccumulator(ShellAccumulator):
 
     def short_run(self, rate: float) -> str:
         """Where blocking cannot see the slowest eddies, which decay at this rate: a note."""
-        time = self.blocks.count * self.observable.every * self.case.fluid.timestep
+        runs, step = self.blocks.series, self.case.fluid.timestep
+        time = self.blocks.count / runs * self.observable.every * step
         if not 0 < time * rate < ENOUGH:
             return ""
-        return of_relaxations(time * rate)
+        return of_relaxations(time * rate, runs)
 
 
 class RoundFlow:

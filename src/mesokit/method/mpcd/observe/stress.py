@@ -16,9 +16,9 @@ from mesokit.method.mpcd.expected.molecules import (
     springs_in,
     stress_in_shear,
 )
-from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH, kept
+from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
@@ -85,8 +85,7 @@ class StressAccumulator(TensorAccumulator):
         slowest = max((float(times.mode[0]) for _, times in self.springs), default=0.0)
         if not 0 < self.length() < ENOUGH * slowest:
             return ""
-        times = self.length() / slowest
-        return of_relaxations(times)
+        return of_relaxations(self.length() / slowest, self.blocks.series)
 
     def least(self, weight: Array) -> float:
         """Least error of a sum of elements of the stress of bonds, and so of the total, with these

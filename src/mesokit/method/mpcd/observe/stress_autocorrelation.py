@@ -13,8 +13,8 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import shear_note
 from mesokit.method.mpcd.expected.rheometer import modes_of_stress
-from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
 from mesokit.method.mpcd.observe.stress import UNIT
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
@@ -152,7 +152,7 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         if last < 0.75 * STRESS_TIMES * slow:
             until = f"lower bound: {until}, stress time {slow:.3g} tau"
         elif times < ENOUGH:
-            until += f", error bar is a lower bound: the run has {times:.2g} stress times"
+            until += f", {of_relaxations(times, self.runs, 'stress times')}"
         return until if error > ROUGH else f"{shear_note(self.case)}; {until}"
 
     def integrals(self, time: Array, modulus: Estimate) -> tuple[list[Comparison], dict[str, Any]]:

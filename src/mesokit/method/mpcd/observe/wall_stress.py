@@ -35,6 +35,8 @@ class WallStress(Observable):
 
     quantity: Literal["wall-stress"] = tag("wall-stress")
     of_built_up_flow: ClassVar[bool] = True
+    in_any_flow: ClassVar[tuple[str, ...]] = ("pressure on",)
+    at_any_kT: ClassVar[tuple[str, ...]] = ("on both plates",)
     asks_transport: ClassVar[bool] = True
     measures: ClassVar[tuple[str, ...]] = ("walls",)
 

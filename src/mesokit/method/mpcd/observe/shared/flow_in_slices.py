@@ -14,7 +14,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.result import Comparison
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 VISCOSITY = "a^2/tau"
-ENOUGH = 100  # relaxation times of a flow, for an error bar
 
 
 def refuse_kinds(kind: int | str | None) -> None:
@@ -115,11 +114,12 @@ class Seen:
 
     def short_run(self, viscosity: float) -> str:
         """Where blocking cannot see the slowest eddies, which live H^2/(pi^2 nu): a note."""
-        time = self.profile.blocks.count * self.profile.observable.every * self.case.fluid.timestep
+        blocks, step = self.profile.blocks, self.case.fluid.timestep
+        time = blocks.count / blocks.series * self.profile.observable.every * step
         times = time * np.pi**2 * viscosity / self.edges[-1] ** 2
         if not 0 < times < ENOUGH:
             return ""
-        return of_relaxations(times)
+        return of_relaxations(times, blocks.series)
 
     def plates(self) -> tuple[float, float]:
         """Velocities of the lower and the upper plate."""

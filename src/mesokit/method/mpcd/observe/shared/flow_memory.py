@@ -11,9 +11,8 @@ from scipy.optimize import brentq
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.numbers import TIMES
-from mesokit.method.mpcd.observe.shared.flow_in_slices import ENOUGH
 from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
-from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.method import BuildUp
 from mesokit.statistics import Blocks
 
@@ -26,21 +25,23 @@ LONGEST = 100.0  # relaxation time that a run may show, in lengths of the run wi
 class FlowMemory(NamedTuple):
     """A run beside the relaxation time of the momentum of its flow.
 
-    time: the relaxation time; times: length of the run in such times, both nan where no force tells
-    them. least: least standard error of the mean momentum, 0 in a long run; in a short one that of
-    a thermal momentum, of variance M kT, whose correlation falls as an exponential.
+    time: the relaxation time; times: length of the run in such times, both nan where no force
+    gives them. least: least standard error of the mean momentum: that of a thermal momentum, of
+    variance M kT, whose correlation falls as an exponential. runs: how many are pooled, each of
+    that length.
     """
 
     time: float
     times: float
     least: float
+    runs: int = 1
 
     @property
     def note(self) -> str:
         """Where blocking cannot see how slowly the flow changes: a caveat."""
         if not self.times < ENOUGH:
             return ""
-        return of_relaxations(self.times)
+        return of_relaxations(self.times, self.runs)
 
 
 def flow_memory(case: Case, axis: int, momentum: float, blocks: Blocks, every: int) -> FlowMemory:
@@ -59,10 +60,9 @@ def flow_memory(case: Case, axis: int, momentum: float, blocks: Blocks, every: i
         return FlowMemory(np.nan, np.nan, 0.0)
     had = np.inf if case.fluid.start.run is not None else case.run.warmup * case.fluid.timestep
     time = _relaxation(given, had, length)
-    times, least = length / time, 0.0
-    if times < ENOUGH:
-        least = float((mass * case.fluid.kT * kept(times) / blocks.series) ** 0.5)
-    return FlowMemory(time, times, least)
+    times = length / time
+    least = float((mass * case.fluid.kT * kept(times) / blocks.series) ** 0.5)
+    return FlowMemory(time, times, least, blocks.series)
 
 
 def _relaxation(given: float, had: float, length: float) -> float:

@@ -14,14 +14,13 @@ import numpy as np
 from mesokit.method.mpcd.expected.molecules import least_times_of
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
 from mesokit.observe.shared.over_molecules import OwnMeans
+from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-
-ENOUGH = 30.0  # relaxation times of the slowest mode, for an error bar by blocking
 
 
 def kept(times: float) -> float:
@@ -103,8 +102,9 @@ class MoleculeTensorAccumulator(TensorAccumulator):
             return self.own.caution()
         if not 0 < times < ENOUGH:
             return ""
-        most = "at most " * (self.case.solutes is not None and self.case.fluid.molecule is not None)
-        return f"error bar is a lower bound: the run has {most}{times:.2g} relaxation times"
+        both = self.case.solutes is not None and self.case.fluid.molecule is not None
+        words = "relaxation times at most" if both else "relaxation times"
+        return of_relaxations(times, self.runs, words)
 
     def bounds(self, part: int) -> tuple[Array, float]:
         """Least errors of the elements (d, d) of a part, and of its trace; 0 in a long run.

@@ -59,7 +59,7 @@ class HeightInTimeAccumulator(Samples):
         self.samples += 1
 
     def result(self) -> Result:
-        """The series; a sample has no error bar: nan."""
+        """The series, with error bars where four runs or more are pooled."""
         time, rows = self.series.time(), self.series.values()
         ball = Ball.of(self.case, rows, self.gravity, self.series.stride)
         expected = None if ball is None else ball.height(time - time[0])
@@ -69,7 +69,7 @@ class HeightInTimeAccumulator(Samples):
             name=self.name,
             x={"time": time},
             value=rows[:, 0],
-            error=np.full(len(time), np.nan),
+            error=self.series.error()[:, 0],
             label="height of the centre of mass",
             units={"value": "a", "time": "tau"},
             expected=expected,
@@ -85,7 +85,8 @@ class HeightInTimeAccumulator(Samples):
             return []
         nan, (height, velocity) = math.nan, rows[-1]
         if ball is None:
-            return [Comparison("height at the end", float(height), nan, unit="a")]
+            error = float(self.series.error()[-1, 0])
+            return [Comparison("height at the end", float(height), error, unit="a")]
         since = time[-1] - time[0]
         known, top = float(ball.height(since)), float(ball.top(since))
         reached = float(height - ball.radius + velocity**2 / (2 * abs(self.gravity)))
