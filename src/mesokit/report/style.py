@@ -10,7 +10,6 @@ from mesokit.report.caption import mathematics, symbols
 
 WIDTH, HEIGHT = 6.4, 4.8  # inches
 LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is
-WIDER = 1.1  # than axes are before margins are taken away, what a legend above may be
 MARKERS = "osD^v<>pP*X"
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
 LETTERS = "abcdefghijkl"  # of panels
@@ -83,16 +82,6 @@ def lettered(panels: Sequence[Any]) -> None:
             title = next(filter(None, map(ax.get_title, ("left", "center"))), "")
             ax.set_title("")
             ax.set_title(f"({letter}) {title}".rstrip(), loc="left", fontsize=10)
-
-
-def legend_above(ax: Any, columns: int = 3) -> None:
-    """A legend over the axes, where it hides no data, in as many columns as are no wider."""
-    if not ax.get_legend_handles_labels()[0]:
-        return
-    for number in range(columns, 0, -1):
-        legend = ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=number, borderaxespad=0.2)
-        if legend.get_window_extent().width <= WIDER * ax.bbox.width:
-            return
 
 
 def sparse_logarithm(axis: Any, least: float, most: float) -> None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
+from mesokit.report.finish.legend import legend_above
 from mesokit.report.style import (
     COLOURS,
     LINES,
@@ -21,7 +22,6 @@ from mesokit.report.style import (
     fonts,
     height_of,
     labelled,
-    legend_above,
     sparse_logarithm,
 )
 from mesokit.seam.result import Array, with_error
