@@ -557,3 +557,22 @@ def test_entries_of_a_legend_read_in_rows_with_theory_last():
     seen = sorted(places, key=lambda name: (-round(places[name][1]), places[name][0]))
     assert seen == [*names, "theory: Rouse"]
     assert 1 < len({round(y) for _, y in places.values()}) < 5
+
+
+@pytest.mark.parametrize("drawing", ["displacement", "flow"])
+def test_labels_are_no_longer_than_their_axes(drawing):
+    if drawing == "flow":
+        time = np.linspace(0, 20, 60)
+        flow = {"conserves_momentum": 0, "driven": True}
+        figure = plot(dataclasses.replace(energies(time), extra=flow))
+    else:
+        time = np.array([0.0, 1.0, 10.0])
+        figure = plot(Result(
+            "mean-square-displacement", "d", {"time": time}, 4 * time, 0.1 * time,
+            "mean square displacement", {"value": "length^2", "time": "time"}, expected=4 * time,
+            comparisons=5 * (Comparison("diffusion coefficient", 1.0, 0.1),),
+            drawing="displacement", extra={"components": "xy"},
+        ))  # fmt: skip
+    figure.draw_without_rendering()
+    for ax in figure.axes:
+        assert ax.yaxis.label.get_window_extent().height <= ax.bbox.height

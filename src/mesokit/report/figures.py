@@ -22,6 +22,7 @@ from mesokit.report import (
     wake,
 )
 from mesokit.report.caption import LINE, below, compared
+from mesokit.report.finish.labels import fit_labels
 from mesokit.report.finish.origin import origin_of
 from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
@@ -115,6 +116,7 @@ def plot(
         for one in figure.axes:
             _around_one_place(one)
         below(figure, text)
+        fit_labels(figure)
         return figure
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
+from mesokit.report.finish.labels import fit_labels
 from mesokit.report.finish.legend import legend_above
 from mesokit.report.style import (
     COLOURS,
@@ -119,6 +120,7 @@ def draw(
         ax.legend(loc="best")
         if wide < WIDTH:
             legend_above(ax)
+        fit_labels(figure)
         return figure
 
 
