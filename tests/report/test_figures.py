@@ -576,3 +576,20 @@ def test_labels_are_no_longer_than_their_axes(drawing):
     figure.draw_without_rendering()
     for ax in figure.axes:
         assert ax.yaxis.label.get_window_extent().height <= ax.bbox.height
+
+
+def test_a_part_of_a_stress_whose_theory_is_approximate_is_dashed():
+    parts, axes = np.array(["kinetic", "total"]), np.array(["x", "y"])
+    expected = np.array([[[np.nan, 0.1], [0.1, np.nan]], [[np.nan, 1.0], [1.0, np.nan]]])
+    result = Result(
+        "stress", "stress", {"part": parts, "i": axes, "j": axes}, 1.1 * np.nan_to_num(expected),
+        np.full((2, 2, 2), 0.1), "stress", {"value": "m/tau^2"}, expected=expected, samples=9,
+        drawing="tensor", comparisons=(
+            Comparison("viscosity from the stress", 1.1, 0.1, 1.0),
+            Comparison("kinetic part from the stress", 0.11, 0.01, 0.1, note="approximate: chaos"),
+        ),
+    )  # fmt: skip
+    ax = plot(result).axes[0]
+    lines = {str(line.get_label()): line for line in ax.collections}
+    assert [segment[0][1] for segment in lines["theory"].get_segments()] == [1.0]
+    assert [segment[0][1] for segment in lines["theory, approximate"].get_segments()] == [0.1]

@@ -85,7 +85,14 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
             expected = np.array([result.expected[e] for e in chosen])
             if np.isfinite(expected).any():
                 ends = place - width / 2, place + width / 2
-                ax.hlines(expected, *ends, color="black", lw=1.5, label=_theory(result))
+                rough = _is_rough(result, str(groups[number])) & (expected != 0)
+                for use, label, look in (
+                    (~rough, "theory", {"color": "black"}),
+                    (rough, "theory, approximate", {"color": "0.4", "ls": (0, (2, 1))}),
+                ):
+                    if np.isfinite(expected[use]).any():
+                        first, last = (end[use] for end in ends)
+                        ax.hlines(expected[use], first, last, lw=1.5, label=label, **look)
     ax.set_xticks(range(len(inner)), [f"${name}$" for name in inner])
     ax.set_xlim(-0.6, len(inner) - 0.4)
     ax.set_title(title, fontsize=10)
@@ -93,10 +100,18 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
     ax.set_ylabel(labelled(SYMBOLS.get(result.label, "force per area"), result.units["value"]))
 
 
-def _theory(result: Result) -> str:
-    """What its lines are called."""
-    rough = any(c.approximate and np.isfinite(c.expected) for c in result.comparisons)
-    return "theory, approximate" if rough else "theory"
+def _is_rough(result: Result, part: str) -> bool:
+    """Whether theory of a part is approximate: by comparisons that name it, or else by any.
+
+    What theory expects to vanish does, whatever is approximate.
+    """
+    known = [c for c in result.comparisons if np.isfinite(c.expected)]
+    parts = [str(name) for name in next(iter(result.x.values()))]
+    named = [c for c in known if any(c.what.startswith(name) for name in parts)]
+    own = [c for c in named if c.what.startswith(part)]
+    if named and not own:
+        own = [c for c in known if c not in named]
+    return any(c.approximate for c in own or known)
 
 
 def _names(result: Result, entry: tuple[int, ...]) -> list[str]:
