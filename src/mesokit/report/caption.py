@@ -10,7 +10,7 @@ from typing import Any
 
 from mesokit.case.describe.digits import two_digits
 from mesokit.seam.in_units import shown
-from mesokit.seam.result import Comparison, with_error
+from mesokit.seam.result import Comparison, signed, with_error
 from mesokit.seam.units import CELLS
 
 MOST = 8  # comparisons below a figure; the table of the run has all
@@ -37,6 +37,7 @@ _FORMULAS = (
     (r"\bN sqrt\(m kT\)", r"$N\\sqrt{m\\,k_BT}$"),
     (r"\bL_r/D\b", r"$L_r/D$"),
     (r"\btau_p\b", r"$\\tau_p$"),
+    (r"\bpsi_6\b", r"$\\psi_6$"),
     (r"\bk_B T\b", r"$k_BT$"),
     (r"\b([vFTR])_([xyzrgp])\b", r"$\1_\2$"),
     (r"\b([gS])\(([rq])\)", r"$\1(\2)$"),
@@ -168,7 +169,7 @@ def _line(c: Comparison, shared: Sequence[str]) -> str:
         if c.approximate and c.percent == c.percent:
             said[0] += f", {two_digits(c.percent, sign='+')} %"
         elif c.deviation == c.deviation:
-            said[0] += f", {c.deviation:+.1f} s.e."
+            said[0] += f", {signed(c.deviation)} s.e."
     said += [note] if note else []
     return f"{text} ({'; '.join(said)})" if said else text
 

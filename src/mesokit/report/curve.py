@@ -31,7 +31,8 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     for i, chosen in enumerate(itertools.islice(choices, SHOWN)):
         at: Any = (slice(None), *chosen)
         label = ", ".join(
-            f"{name} {result.x[name][k]}" for name, k in zip(others, chosen, strict=True)
+            f"{name} {result.x[name][k]}".removeprefix("of ")
+            for name, k in zip(others, chosen, strict=True)
         )
         ax.errorbar(
             places,

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mesokit.report.caption import mathematics, symbols
+from mesokit.seam.in_units import shown
 
 WIDTH, HEIGHT = 6.4, 4.8  # inches
 LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is
@@ -66,12 +67,16 @@ def looks() -> Iterator[tuple[Any, str]]:
 
 
 def labelled(label: str, unit: str) -> str:
-    """An axis label with its unit; a letter alone is a symbol.
+    """An axis label with its unit, unless that is a word of it; a letter alone is a symbol.
 
     >>> labelled("q", "1/a")
     '$q$  [$a^{-1}$]'
+    >>> labelled("time lag $t$", "time")
+    'time lag $t$'
     """
     label = f"${label}$" if len(label) == 1 and label.isalpha() else label
+    if shown().of(unit) in label.split():  # time in units of time
+        unit = ""
     return f"{mathematics(label)}  [{symbols(unit)}]" if unit else mathematics(label)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case.describe.digits import two_digits
-from mesokit.seam.result import Comparison, Result, in_percent, with_error
+from mesokit.seam.result import Comparison, Result, in_percent, signed, with_error
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -51,7 +51,7 @@ def cells(c: Comparison) -> tuple[str, str, str, str, str, str]:
     expected = "" if math.isnan(c.expected) else f"{c.expected:.4g}"
     deviation = ""
     if math.isfinite(c.deviation):
-        deviation = f"{c.deviation:+.1f} s.e."
+        deviation = f"{signed(c.deviation)} s.e."
         if math.isfinite(c.percent) and c.expected:
             deviation += f" ({in_percent(c.percent)})"
     elif c.approximate and math.isfinite(c.percent):

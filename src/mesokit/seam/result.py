@@ -115,7 +115,7 @@ class Comparison:
                 else (f", expected {self.expected:#.4g}")
             )
         if math.isfinite(self.deviation):
-            text += f": {self.deviation:+.1f} standard errors"
+            text += f": {signed(self.deviation)} standard errors"
             if math.isfinite(self.percent) and self.error < abs(self.expected):
                 text += f", {in_percent(self.percent)}"
         elif self.approximate and math.isfinite(self.percent):
@@ -169,6 +169,15 @@ def with_error(value: float, error: float) -> str:
     return f"{scaled}e{power:+03d}"
 
 
+def signed(value: float) -> str:
+    """A number with its sign and one decimal; zero is +0.0.
+
+    >>> signed(-1.26), signed(-0.04)
+    ('-1.3', '+0.0')
+    """
+    return f"{round(value, 1) + 0.0:+.1f}"
+
+
 def in_percent(percent: float) -> str:
     """A deviation in percent: one decimal, or two digits of what one decimal would hide.
 
@@ -176,7 +185,7 @@ def in_percent(percent: float) -> str:
     ('-12.3 %', '+0.0073 %', '+0.0 %')
     """
     hidden = 0 < abs(percent) < 0.05
-    return f"{two_digits(percent, sign='+') if hidden else f'{percent:+.1f}'} %"
+    return f"{two_digits(percent, sign='+') if hidden else signed(percent)} %"
 
 
 @dataclass(frozen=True, eq=False)
