@@ -566,6 +566,7 @@ class TestNewStudies:
     ("visocsity", "visocsity: no key of a case; 'viscosity' is explained at observe.flow-rate"),
     ("restituton", "'restitution' is explained at spheres"),
     ("denisty", "denisty: unknown key; did you mean 'density'?"),
+    ("box.toml", "box.toml: expected a key of a case, such as run.steps"),
     ("zzz", "zzz: unknown key; mesokit explain lists the sections of a case"),
 ])  # fmt: skip
 def test_explain_proposes_what_it_can_explain(given, wanted, capsys: Captured) -> None:

@@ -72,6 +72,9 @@ def test_a_film_and_its_progress(capsys: Captured) -> None:
     assert "3 frames last 0.6 s; --fps 1 slows the film down" in captured.err
     assert ends("animate", "run", "--fps", "1") == 0 and "slows" not in capsys.readouterr().err
     assert count_frames_and_secs("run/flow-quiver.mp4")[0] == 3
+    assert ends("animate", "run", "--average", "3") == 0
+    said = capsys.readouterr().err
+    assert "the film has one frame, so nothing moves in it" in said and "slows" not in said
     assert ends("animate", "run", "--output", "film.gif", "--quiet") == 0
     captured = capsys.readouterr()
     assert captured.out + captured.err == ""

@@ -17,6 +17,7 @@ from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from mesokit.observe import Result
 from mesokit.report import plot, print_comparisons, save, save_all
 from mesokit.report.caption import MOST, compared, mathematics
+from mesokit.report.finish.legend import legend_above
 from tests.helpers.comparisons import by_name
 from tests.helpers.fake_fluid import FakeFluid, case_for, taken
 
@@ -427,8 +428,6 @@ def test_energy_that_is_not_conserved_has_no_change_since_a_chance_sample():
 def test_a_legend_above_is_no_wider_than_its_axes():
     from matplotlib.figure import Figure
 
-    from mesokit.report.style import legend_above
-
     figure = Figure(figsize=(6.4, 4.8), layout="constrained")
     ax = figure.subplots()
     for name in ("theory: Taylor-Couette, no slip", "measured, one standard error", "fit"):
@@ -539,3 +538,58 @@ def test_frames_and_the_map_of_their_mean_are_drawn_once(make_case):
     assert [r.name for r in drawn_once(results.values())] == ["velocity-field", "density-field"]
     del results["velocity-field"]
     assert [r.name for r in drawn_once(results.values())] == ["flow-frames", "density-field"]
+
+
+def test_entries_of_a_legend_read_in_rows_with_theory_last():
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(4.0, 3.0), layout="constrained")
+    ax = figure.subplots()
+    ax.plot([0, 1], label="theory: Rouse")
+    names = ["kinetic", "collisional", "bond", "total"]
+    for name in names:
+        ax.errorbar([0, 1], [0, 1], [0.1, 0.1], label=name)
+    legend_above(ax)
+    figure.draw_without_rendering()
+    places = {
+        t.get_text(): t.get_transform().transform((0, 0)) for t in ax.get_legend().get_texts()
+    }
+    seen = sorted(places, key=lambda name: (-round(places[name][1]), places[name][0]))
+    assert seen == [*names, "theory: Rouse"]
+    assert 1 < len({round(y) for _, y in places.values()}) < 5
+
+
+@pytest.mark.parametrize("drawing", ["displacement", "flow"])
+def test_labels_are_no_longer_than_their_axes(drawing):
+    if drawing == "flow":
+        time = np.linspace(0, 20, 60)
+        flow = {"conserves_momentum": 0, "driven": True}
+        figure = plot(dataclasses.replace(energies(time), extra=flow))
+    else:
+        time = np.array([0.0, 1.0, 10.0])
+        figure = plot(Result(
+            "mean-square-displacement", "d", {"time": time}, 4 * time, 0.1 * time,
+            "mean square displacement", {"value": "length^2", "time": "time"}, expected=4 * time,
+            comparisons=5 * (Comparison("diffusion coefficient", 1.0, 0.1),),
+            drawing="displacement", extra={"components": "xy"},
+        ))  # fmt: skip
+    figure.draw_without_rendering()
+    for ax in figure.axes:
+        assert ax.yaxis.label.get_window_extent().height <= ax.bbox.height
+
+
+def test_a_part_of_a_stress_whose_theory_is_approximate_is_dashed():
+    parts, axes = np.array(["kinetic", "total"]), np.array(["x", "y"])
+    expected = np.array([[[np.nan, 0.1], [0.1, np.nan]], [[np.nan, 1.0], [1.0, np.nan]]])
+    result = Result(
+        "stress", "stress", {"part": parts, "i": axes, "j": axes}, 1.1 * np.nan_to_num(expected),
+        np.full((2, 2, 2), 0.1), "stress", {"value": "m/tau^2"}, expected=expected, samples=9,
+        drawing="tensor", comparisons=(
+            Comparison("viscosity from the stress", 1.1, 0.1, 1.0),
+            Comparison("kinetic part from the stress", 0.11, 0.01, 0.1, note="approximate: chaos"),
+        ),
+    )  # fmt: skip
+    ax = plot(result).axes[0]
+    lines = {str(line.get_label()): line for line in ax.collections}
+    assert [segment[0][1] for segment in lines["theory"].get_segments()] == [1.0]
+    assert [segment[0][1] for segment in lines["theory, approximate"].get_segments()] == [0.1]

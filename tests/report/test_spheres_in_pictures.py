@@ -21,6 +21,7 @@ from mesokit.report.flow.colouring import COLOURS, MOST, in_film
 from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.shaded import DARK, SHADE, Balls, shaded
 from mesokit.report.flow.solids import Section
+from mesokit.report.flow.source import sources
 from mesokit.seam.method import Enclosure
 from tests.helpers.flying_spheres import METHOD
 
@@ -210,6 +211,12 @@ class TestShaded:
         middle = image[image.shape[0] // 2, image.shape[1] // 2]
         yellow = middle[0] > middle[2]  # the fast one
         assert yellow == (front == 1)
+
+    @pytest.mark.parametrize(("gravity", "axes"), [((0, 0, -1), "xz"), ((0, -1, 0), "xy")])
+    def test_what_falls_is_seen_from_the_side(self, case_of, gravity, axes):
+        frames = frames_of([[3, 3, 1], [3, 3, 5]])
+        found = sources(case_of((6, 6, 6), 2, gravity=gravity), {}, frames)
+        assert found.axes == tuple(axes) and found[-1].axes == tuple(axes)
 
     def test_a_place_along_the_third_axis_hides_what_is_before_it(self, case_of):
         places = [[3, 3, 1], [3, 3, 5]]

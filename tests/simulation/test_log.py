@@ -93,6 +93,19 @@ def test_a_damaged_log_is_set_aside(damage, logging, crash_at, tmp_path):
     assert steps == [step for step in range(0, 100, 9) if step >= steps[0]] and steps[0] > 0
 
 
+def test_a_damaged_log_of_a_run_that_has_ended_begins_anew_with_its_header(logging, tmp_path):
+    path = tmp_path / "run"
+    Simulation(logging, output=path, threads=1).run()
+    log = (path / "log.csv").read_bytes()
+    (path / "log.csv").write_bytes(b"\xff" + log[1:])
+    with pytest.warns(UserWarning, match="kept as log-damaged.csv"):
+        Simulation.resume(path, threads=1).run()
+    Simulation.resume(path, threads=1).run()
+    assert (path / "log.csv").read_bytes() == log.splitlines(keepends=True)[0]
+    assert [file.name for file in path.glob("log-*")] == ["log-damaged.csv"]
+    assert len(mesokit.open(path).log) == 0
+
+
 class Terminal(io.StringIO):
     def isatty(self):
         return True

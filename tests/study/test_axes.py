@@ -38,9 +38,10 @@ def test_what_the_command_line_says(text, points):
         ("a=x:1:3", "expected KEY=VALUE"),
         ("a=1:2:0", "no value; expected KEY=VALUE"),
         ("a=1:2", "or KEY=FIRST:LAST:NUMBER"),
-        ("a=-inf:2:4", "vary a=-inf:2:4: expected two numbers"),
-        ("a=2:nan:4:log", "vary a=2:nan:4:log: expected two numbers"),
+        ("a=-inf:2:4", "vary a=-inf:2:4: expected two finite numbers"),
+        ("a=2:nan:4:log", "vary a=2:nan:4:log: expected two finite numbers"),
         ("a=1.7e308:-1.7e308:2", "expected two numbers, not that far apart"),
+        ("a=inf:1:3", "expected two finite numbers"),
         ("a=0:1:100001", "vary a=0:1:100001: expected at most 100000 values"),
     ],
 )

@@ -123,9 +123,9 @@ def test_pictures(study):
 
     figure = study.plot("acceleration", "flow-rate.mean", fit="line")
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert labels[0] == "each run" and labels[1] == "theory of the steady flow, not reached"
-    assert labels[2].startswith("fit: $y = ") and labels[4].startswith("3 runs pooled")
-    assert labels[3] == "not steady at all points"
+    assert labels[1] == "each run" and labels[3] == "theory of the steady flow, not reached"
+    assert labels[2].startswith("fit: $y = ") and labels[0].startswith("3 runs pooled")
+    assert figure._supxlabel.get_text() == "not steady at all points" and len(labels) == 4
     assert figure.axes[0].get_xlabel() == r"acceleration $g$  [$a/\tau^2$]"
     [dots] = [line for line in figure.axes[0].lines if line.get_label() == "each run"]
     row = study.table()[-1]
@@ -180,6 +180,38 @@ def test_theory_has_gaps_where_there_is_none():
         np.testing.assert_array_equal(drawn[1].get_ydata(), [0.5] * (expected[0] == 0.8))
 
 
+def test_theory_is_dashed_where_alone_it_is_approximate():
+    from mesokit.study.dependence import Curve, Theory, draw
+
+    x, fine = np.array([1.0, 2.0, 3.0, 4.0]), np.linspace(1, 4, 31)
+    rough = np.array([False, False, True, True])
+    curve = Curve("", x, x**2, 0.5 * x, x**2, rough=rough, between=lambda _: Theory(fine, fine**2))
+    ax = draw([curve], ("x", ""), ("y", "")).axes[0]
+    lines = {str(line.get_label()): line for line in ax.lines}
+    for label, low, high, dash in (("theory", 1, 2, "-"), ("theory, approximate", 2, 4, "--")):
+        seen = fine[np.isfinite(lines[label].get_ydata())]
+        assert (seen[0], seen[-1]) == pytest.approx((low, high))
+        assert lines[label].get_linestyle() == dash
+    ax = draw([curve._replace(rough=np.ones(4, bool))], ("x", ""), ("y", "")).axes[0]
+    assert "theory" not in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+@pytest.mark.parametrize("error", [0.001, 1.0])
+def test_deviations_that_symbols_hide_have_a_panel(error):
+    """Of points without theory, and of what is not steady, there is no ratio."""
+    from mesokit.study.dependence import Curve, draw
+
+    x = np.array([1.0, 2.0, 3.0, 4.0, 5.0])
+    expected = np.array([1, 2, np.nan, 4, 5])
+    curve = Curve("", x, 1.01 * x, 0 * x + error, expected, steady=x != 4)
+    axes = draw([curve], ("x", ""), ("y", "")).axes
+    assert len(axes) == 1 + (error < 0.1) and axes[-1].get_xlabel() == "$x$"
+    if len(axes) > 1:
+        [points] = axes[1].containers
+        ratio = points.lines[0].get_ydata()
+        np.testing.assert_allclose(ratio, [1.01, 1.01, np.nan, np.nan, 1.01])
+
+
 @pytest.mark.parametrize(("x", "y", "scales"), [
     ([1.0, 2.0, 4.0], [1.0, 2.0, 4.0], ("log", "linear")),  # a geometric list
     ([0.02, 0.0437344, 0.0956352], [0.001, 0.01, 0.1], ("log", "log")),
@@ -212,8 +244,8 @@ def test_wild_and_undetermined_points_do_not_set_the_axis():
     ax = draw([Curve("", x, value, error, np.full(5, 0.8))], ("x", ""), ("y", "")).axes[0]
     low, high = ax.get_ylim()
     assert 0.6 < low < 0.7 and 1.2 < high < 1.3
-    labels = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert "undetermined at 3" in labels and "error bar beyond the axis: 2.0(30)e+04 at 1" in labels
+    notes = ax.figure._supxlabel.get_text().splitlines()
+    assert notes == ["undetermined at 3", "error bar beyond the axis: 2.0(30)e+04 at 1"]
     calm = draw([Curve("", x, value, 0.01 * error, value)], ("x", ""), ("y", "")).axes[0]
     assert calm.get_ylim()[1] > 2e4  # a number that is known well is shown
 
@@ -563,5 +595,5 @@ def test_legends_say_what_theory_is_in_the_words_of_the_field():
     axes = [Axis.parse(f"{FORCE}=0.06,0.24")]
     figure = plot(rows, axes, FORCE, "velocity-profile.viscosity")
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert labels[0].startswith("theory, independent of slip")
-    assert "error bar is a lower bound at all points" in labels
+    assert labels[-1].startswith("theory, independent of slip")
+    assert figure._supxlabel.get_text() == "error bar is a lower bound at all points"

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import click
 
 from mesokit.cli.commands import cli
-from mesokit.cli.words import frames_of_parts, reason, say
+from mesokit.cli.words import frames_of_parts, reason, say, warnings_said
 from mesokit.errors import MesokitError, RunError
 from mesokit.processes.world import known, world
 
@@ -24,7 +24,8 @@ def status_of(arguments: Sequence[str] | None) -> int:
 
 def _carried_out(arguments: list[str]) -> int:
     try:
-        status = cli.main(arguments, prog_name="mesokit", standalone_mode=False, obj=arguments)
+        with warnings_said():
+            status = cli.main(arguments, prog_name="mesokit", standalone_mode=False, obj=arguments)
         return status if isinstance(status, int) else 0
     except click.exceptions.Abort as abort:
         stop = abort.__cause__

@@ -1,7 +1,6 @@
 """What a run or a study says when it is stopped, fails or has come to its end."""
 
 import contextlib
-import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,19 +11,6 @@ from mesokit.errors import RunError
 from mesokit.io.shared_work import work_words
 from mesokit.processes.signals import Stopped
 from mesokit.processes.world import world
-
-
-@contextlib.contextmanager
-def warnings_said() -> Iterator[None]:
-    """Warnings of the Python API as lines on standard error."""
-
-    def show(message: Warning | str, *where: object) -> None:
-        say(f"warning: {message}")
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", UserWarning)
-        warnings.showwarning = show  # type: ignore[assignment]
-        yield
 
 
 @contextlib.contextmanager

@@ -230,7 +230,9 @@ def animate(
     output = output or files.directory.flow_file(kind, ".mp4")
     film = files.animate(output, kind, fps=fps, progress=FilmReporter(quiet), **choices)
     if not quiet:
-        if (lasts := film.frames / fps) < SHORT:
+        if film.frames == 1:
+            say("the film has one frame, so nothing moves in it; the case may keep more")
+        elif (lasts := film.frames / fps) < SHORT:
             slower = max(1, film.frames // LONG)
             say(f"{film.frames} frames last {lasts:.2g} s; --fps {slower} slows the film down")
         click.echo(film.path)

@@ -19,7 +19,7 @@ from mesokit.cli.commands import (
     read,
     require_run,
 )
-from mesokit.cli.outcome import show_results, stopping, warnings_said
+from mesokit.cli.outcome import show_results, stopping
 from mesokit.cli.together import on_ranks
 from mesokit.cli.words import READING, in_json, patience, say
 from mesokit.errors import CaseError
@@ -119,7 +119,7 @@ def resume(
     from mesokit.run.simulation import Simulation
 
     longer = None if until_error else steps
-    with stopping(f"mesokit resume {run}"), warnings_said():
+    with stopping(f"mesokit resume {run}"):
         simulation = Simulation.resume(run, threads=threads, steps=longer)
         if not (quiet or RunDirectory(run).checkpoint_file.exists()):
             say(f"{run}: no checkpoint yet; starting from step 0")

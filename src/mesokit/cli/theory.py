@@ -215,7 +215,7 @@ def _chain_rows(
     """Times, moduli and viscosity of a fluid that is all chains of a kind."""
     from mesokit import theory
 
-    eta, force = found.dynamic_viscosity, "m/time^2" if gas.dimension == 2 else "m/(a time^2)"
+    eta, force = found.dynamic_viscosity, "m/tau^2" if gas.dimension == 2 else "m/(a tau^2)"
     times = theory.rouse_times(theory.linear_modes(length), friction, K=K)
     square = theory.mean_square_bond(K=K, dimension=gas.dimension, kT=gas.kT)
     modulus = gas.density / length * gas.kT
@@ -238,7 +238,7 @@ def _chain_rows(
             note = "approximate: Zimm, one chain in a simple fluid"
             rows.insert(4, ("with hydrodynamics", number(float(zimm.mode[0]), "tau"), note))
     for w in frequencies:
-        at = f"at the frequency {w:g}/time"
+        at = f"at the frequency {w:g}/tau"
         stored = theory.storage_modulus(w, modulus, times.stress)
         lost = theory.loss_modulus(w, modulus, times.stress, eta)
         rows.append(("storage modulus", number(float(stored), force), at))

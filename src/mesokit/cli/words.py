@@ -9,6 +9,7 @@ import os
 import sysconfig
 import threading
 import traceback
+import warnings
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -24,6 +25,19 @@ def say(text: str) -> None:
 
     with contextlib.suppress(OSError):
         click.echo(text, err=True)
+
+
+@contextlib.contextmanager
+def warnings_said() -> Iterator[None]:
+    """Warnings of the Python API as lines on standard error."""
+
+    def show(message: Warning | str, *where: object) -> None:
+        say(f"warning: {message}")
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", UserWarning)
+        warnings.showwarning = show  # type: ignore[assignment]
+        yield
 
 
 @contextlib.contextmanager

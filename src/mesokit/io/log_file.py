@@ -65,10 +65,12 @@ class LogFile:
         write_text(self.path, "".join([lines[0], *kept]))
 
     def set_aside(self) -> Path:
-        """Give the file a name under which nothing writes it again: the path."""
+        """Give the file a name under which nothing writes it again, the path, and begin anew."""
         names = (f"{ASIDE}{number}.csv" for number in itertools.chain([""], itertools.count(2)))
         free = next(path for name in names if not (path := self.path.with_name(name)).exists())
-        return self.path.rename(free)
+        kept = self.path.rename(free)
+        write_text(self.path, _line(self.names))
+        return kept
 
     @contextmanager
     def _appending(self) -> Iterator[Any]:

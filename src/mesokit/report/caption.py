@@ -37,6 +37,7 @@ _FORMULAS = (
     (r"\bN sqrt\(m kT\)", r"$N\\sqrt{m\\,k_BT}$"),
     (r"\bL_r/D\b", r"$L_r/D$"),
     (r"\btau_p\b", r"$\\tau_p$"),
+    (r"\bpsi_6\b", r"$\\psi_6$"),
     (r"\bk_B T\b", r"$k_BT$"),
     (r"\b([vFTR])_([xyzrgp])\b", r"$\1_\2$"),
     (r"\b([gS])\(([rq])\)", r"$\1(\2)$"),

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.report.caption import mathematics, symbols
-from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above, sparse_logarithm
+from mesokit.report.finish.legend import legend_above
+from mesokit.report.style import COLOURS, MARKERS, labelled, sparse_logarithm
 from mesokit.seam.result import Result
 from mesokit.seam.units import Units
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from mesokit.report.caption import mathematics
-from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
+from mesokit.report.finish.legend import legend_above
+from mesokit.report.style import COLOURS, LINES, MARKERS, labelled
 from mesokit.seam.result import Result
 
 SHOWN = 6  # curves
@@ -30,7 +31,8 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     for i, chosen in enumerate(itertools.islice(choices, SHOWN)):
         at: Any = (slice(None), *chosen)
         label = ", ".join(
-            f"{name} {result.x[name][k]}" for name, k in zip(others, chosen, strict=True)
+            f"{name} {result.x[name][k]}".removeprefix("of ")
+            for name, k in zip(others, chosen, strict=True)
         )
         ax.errorbar(
             places,

@@ -5,10 +5,13 @@ Matplotlib is imported when a figure is made, and drawn without a display.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from mesokit.report import (
     correlation,
@@ -22,6 +25,7 @@ from mesokit.report import (
     wake,
 )
 from mesokit.report.caption import LINE, below, compared
+from mesokit.report.finish.labels import fit_labels
 from mesokit.report.finish.origin import origin_of
 from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
@@ -115,6 +119,7 @@ def plot(
         for one in figure.axes:
             _around_one_place(one)
         below(figure, text)
+        fit_labels(figure)
         return figure
 
 
@@ -169,9 +174,13 @@ def save_all(
 ) -> list[Path]:
     """Draw each result of `drawn_once` into `folder`/name.png; returns the files.
 
-    `run` is the name of the run, that of the folder unless said.
+    `run` is the name of the run, that of the folder unless said. A result with samples, but without
+    a number so far, has a warning in place of a figure.
     """
-    folder = Path(folder)
+    folder, results = Path(folder), list(results)
+    for result in results:
+        if result.samples and not _has_numbers(result):
+            warnings.warn(f"{result.name}: no figure, as no number is known yet", stacklevel=2)
     name = run or folder.resolve().name
     return [
         save(r, folder / f"{r.name}{ending}", case, width=width, run=name)
@@ -180,7 +189,12 @@ def save_all(
 
 
 def drawn_once(results: Iterable[Result]) -> list[Result]:
-    """Those that have samples, without frames whose mean is that of a map among them."""
-    found = [result for result in results if result.samples]
+    """Those that have samples and numbers, without frames whose mean is a map among them."""
+    found = [result for result in results if result.samples and _has_numbers(result)]
     maps = [set(axes_of(r)) for r in found if r.drawing == "map" and "component" in r.x]
     return [r for r in found if r.drawing != "frames" or set(axes_of(r)) not in maps]
+
+
+def _has_numbers(result: Result) -> bool:
+    """Whether there is something to draw: values, or a series beside them."""
+    return bool(result.value.size) or any(np.size(each) > 1 for each in result.extra.values())

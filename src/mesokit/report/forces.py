@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.report.finish.legend import legend_of
 from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, lettered
 from mesokit.seam.result import Result
 
@@ -14,7 +15,6 @@ SHOWN = 12  # bodies in one figure
 MORE = 1.7  # inches for each further row
 PIECES = 120  # means that a force in time is drawn with
 BAR = r"$\pm$ one standard error"
-ROW = 1.2  # entries of the legend in an inch
 
 Places = NDArray[np.intp]
 
@@ -57,20 +57,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         _in_time(panels[-1], result, forces, int(solids[0]))
     if len(panels) > 1:
         lettered(panels)
-    handles: dict[str, Any] = {}
-    for panel in panels[: len(panels) - timed]:
-        found, labels = panel.get_legend_handles_labels()
-        handles |= dict(zip(labels, found, strict=True))
-    theory = handles.pop("theory", None)
-    handles |= {"theory": theory} if theory is not None else {}
-    number = len(handles)
-    figure.legend(
-        handles.values(),
-        handles,
-        loc="outside upper center",
-        ncols=min(number, int(ROW * figure.get_figwidth())),
-        title=BAR,
-    )
+    legend_of(figure, panels[: len(panels) - timed], title=BAR)
 
 
 def _about(result: Result, bodies: Places, name: str) -> str:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from mesokit.report.caption import symbols
-from mesokit.report.style import COLOURS, HEIGHT, LINES, labelled, legend_above
+from mesokit.report.finish.legend import entries, legend_above
+from mesokit.report.style import COLOURS, HEIGHT, LINES, labelled
 from mesokit.seam.result import Result
 
 ROW = 1.25  # inches of a panel
@@ -144,7 +145,7 @@ def _scaled(ax: Any, label: str, curves: Iterable[tuple[Any, Any, Any]], unit: s
 
 def _beside(ax: Any) -> None:
     """A legend to the right of the panel, where it hides no data."""
-    handles = dict(zip(*ax.get_legend_handles_labels()[::-1], strict=True))
+    handles = entries([ax])
     if handles:
         ax.legend(handles.values(), handles, loc="center left", bbox_to_anchor=(1.0, 0.5))
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mesokit.report.caption import mathematics, symbols
+from mesokit.seam.in_units import shown
 
 WIDTH, HEIGHT = 6.4, 4.8  # inches
 LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is
-WIDER = 1.1  # than axes are before margins are taken away, what a legend above may be
 MARKERS = "osD^v<>pP*X"
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
 LETTERS = "abcdefghijkl"  # of panels
@@ -67,12 +67,16 @@ def looks() -> Iterator[tuple[Any, str]]:
 
 
 def labelled(label: str, unit: str) -> str:
-    """An axis label with its unit; a letter alone is a symbol.
+    """An axis label with its unit, unless that is a word of it; a letter alone is a symbol.
 
     >>> labelled("q", "1/a")
     '$q$  [$a^{-1}$]'
+    >>> labelled("time lag $t$", "time")
+    'time lag $t$'
     """
     label = f"${label}$" if len(label) == 1 and label.isalpha() else label
+    if shown().of(unit) in label.split():  # time in units of time
+        unit = ""
     return f"{mathematics(label)}  [{symbols(unit)}]" if unit else mathematics(label)
 
 
@@ -83,16 +87,6 @@ def lettered(panels: Sequence[Any]) -> None:
             title = next(filter(None, map(ax.get_title, ("left", "center"))), "")
             ax.set_title("")
             ax.set_title(f"({letter}) {title}".rstrip(), loc="left", fontsize=10)
-
-
-def legend_above(ax: Any, columns: int = 3) -> None:
-    """A legend over the axes, where it hides no data, in as many columns as are no wider."""
-    if not ax.get_legend_handles_labels()[0]:
-        return
-    for number in range(columns, 0, -1):
-        legend = ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=number, borderaxespad=0.2)
-        if legend.get_window_extent().width <= WIDER * ax.bbox.width:
-            return
 
 
 def sparse_logarithm(axis: Any, least: float, most: float) -> None:

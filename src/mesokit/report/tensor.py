@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mesokit.report.finish.legend import entries, legend_in_rows, legend_of
 from mesokit.report.style import COLOURS, MARKERS, labelled, lettered
 from mesokit.seam.result import Result
 
@@ -18,6 +19,7 @@ SYMBOLS = {
 }
 
 BARS = r", $\pm$ one standard error"  # said once
+BELOW: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.06)}  # of given axes, a legend
 TITLES = {"products of bond components": ("off the diagonal", "on the diagonal")}  # of panels
 
 
@@ -26,53 +28,36 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
 
     Of sizes each part has a panel: the ends of a chain are farther apart than its beads.
     """
-    entries = list(itertools.product(*(range(len(axis)) for axis in result.x.values())))
-    normal = [e for e in entries if _is_normal(result, e)]
-    across = [e for e in entries if not _is_normal(result, e) and _once(result, e)]
+    every = list(itertools.product(*(range(len(axis)) for axis in result.x.values())))
+    normal = [e for e in every if _is_normal(result, e)]
+    across = [e for e in every if not _is_normal(result, e) and _once(result, e)]
     shear, straight = TITLES.get(result.label, ("shear", "normal"))
     panels = [(across, shear), (normal, straight)]
     if result.label == "size of molecules":
         parts = result.x["part"]
-        every = sorted(normal + across, key=lambda e: not _is_normal(result, e))
-        panels = [([e for e in every if e[0] == k], str(part)) for k, part in enumerate(parts)]
+        shown = sorted(normal + across, key=lambda e: not _is_normal(result, e))
+        panels = [([e for e in shown if e[0] == k], str(part)) for k, part in enumerate(parts)]
     if ax is not None:
         _panel(ax, result, *panels[0])
-        _legend(ax.figure, [ax], ax)
+        legend_in_rows(ax, entries([ax]), np.inf, most=2, **BELOW)
         return
     drawn = figure.subplots(1, len(panels), squeeze=False)[0]
     for axes, (chosen, title) in zip(drawn, panels, strict=True):
         _panel(axes, result, chosen, title)
     lettered(list(drawn))
-    _legend(figure, drawn)
+    legend_of(figure, drawn)
 
 
 def draw_moduli(result: Result, figure: Any, ax: Any) -> None:
     """Storage and loss modulus, by parts."""
-    entries = list(itertools.product(*(range(len(axis)) for axis in result.x.values())))
-    own = ax is None
-    ax = figure.subplots() if own else ax
-    _panel(ax, result, entries, rf"$\omega = {result.extra['frequency']:g}\,\tau^{{-1}}$")
-    _legend(ax.figure, [ax], None if own else ax)
-
-
-def _legend(figure: Any, panels: Any, ax: Any = None) -> None:
-    """One for all panels, outside of them: no data there; in as many columns as fit."""
-    handles: dict[str, Any] = {}
-    for panel in panels:
-        found, labels = panel.get_legend_handles_labels()
-        handles |= dict(zip(labels, found, strict=True))
-    for label in [label for label in handles if label.startswith("theory")]:
-        handles[label] = handles.pop(label)  # last
-    if ax is not None:
-        ax.legend(
-            handles.values(), handles, loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2
-        )
-        return
-    for number in range(len(handles), 0, -1):
-        legend = figure.legend(handles.values(), handles, loc="outside upper center", ncols=number)
-        if number == 1 or legend.get_window_extent().width <= figure.bbox.width:
-            return
-        legend.remove()
+    every = list(itertools.product(*(range(len(axis)) for axis in result.x.values())))
+    given = ax
+    ax = figure.subplots() if given is None else given
+    _panel(ax, result, every, rf"$\omega = {result.extra['frequency']:g}\,\tau^{{-1}}$")
+    if given is None:
+        legend_of(figure, [ax])
+    else:
+        legend_in_rows(ax, entries([ax]), np.inf, most=2, **BELOW)
 
 
 def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) -> None:
@@ -100,7 +85,14 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
             expected = np.array([result.expected[e] for e in chosen])
             if np.isfinite(expected).any():
                 ends = place - width / 2, place + width / 2
-                ax.hlines(expected, *ends, color="black", lw=1.5, label=_theory(result))
+                rough = _is_rough(result, str(groups[number])) & (expected != 0)
+                for use, label, look in (
+                    (~rough, "theory", {"color": "black"}),
+                    (rough, "theory, approximate", {"color": "0.4", "ls": (0, (2, 1))}),
+                ):
+                    if np.isfinite(expected[use]).any():
+                        first, last = (end[use] for end in ends)
+                        ax.hlines(expected[use], first, last, lw=1.5, label=label, **look)
     ax.set_xticks(range(len(inner)), [f"${name}$" for name in inner])
     ax.set_xlim(-0.6, len(inner) - 0.4)
     ax.set_title(title, fontsize=10)
@@ -108,10 +100,18 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
     ax.set_ylabel(labelled(SYMBOLS.get(result.label, "force per area"), result.units["value"]))
 
 
-def _theory(result: Result) -> str:
-    """What its lines are called."""
-    rough = any(c.approximate and np.isfinite(c.expected) for c in result.comparisons)
-    return "theory, approximate" if rough else "theory"
+def _is_rough(result: Result, part: str) -> bool:
+    """Whether theory of a part is approximate: by comparisons that name it, or else by any.
+
+    What theory expects to vanish does, whatever is approximate.
+    """
+    known = [c for c in result.comparisons if np.isfinite(c.expected)]
+    parts = [str(name) for name in next(iter(result.x.values()))]
+    named = [c for c in known if any(c.what.startswith(name) for name in parts)]
+    own = [c for c in named if c.what.startswith(part)]
+    if named and not own:
+        own = [c for c in known if c not in named]
+    return any(c.approximate for c in own or known)
 
 
 def _names(result: Result, entry: tuple[int, ...]) -> list[str]:

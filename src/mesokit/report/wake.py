@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.report.style import COLOURS, labelled, legend_above
+from mesokit.report.finish.legend import legend_above
+from mesokit.report.style import COLOURS, labelled
 from mesokit.seam.result import Result
 
 

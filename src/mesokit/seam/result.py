@@ -117,8 +117,8 @@ class Comparison:
         """
         if not math.isfinite(self.deviation):
             return ""
-        shown = f"{self.deviation:+.1f}"
-        own = f"{(self.measured - self.expected) / self.error:+.1f}"
+        shown = signed(self.deviation)
+        own = signed((self.measured - self.expected) / self.error)
         of = " of 1/value" if shown != own else ""
         return f"{'at most ' * self.lower_bound}{shown} {unit}{of}"
 
@@ -200,6 +200,15 @@ def with_error(value: float, error: float) -> str:
     return f"{scaled}e{power:+03d}"
 
 
+def signed(value: float) -> str:
+    """A number with its sign and one decimal; zero is +0.0.
+
+    >>> signed(-1.26), signed(-0.04)
+    ('-1.3', '+0.0')
+    """
+    return f"{round(value, 1) + 0.0:+.1f}"
+
+
 def in_percent(percent: float) -> str:
     """A deviation in percent: one decimal, or two digits of what one decimal would hide.
 
@@ -207,7 +216,7 @@ def in_percent(percent: float) -> str:
     ('-12.3 %', '+0.0073 %', '+0.0 %')
     """
     hidden = 0 < abs(percent) < 0.05
-    return f"{two_digits(percent, sign='+') if hidden else f'{percent:+.1f}'} %"
+    return f"{two_digits(percent, sign='+') if hidden else signed(percent)} %"
 
 
 @dataclass(frozen=True, eq=False)

@@ -147,6 +147,8 @@ def _values(key: str, text: str) -> list[Any]:
             first, last, number = float(found[1]), float(found[2]), int(found[3])
         except ValueError:
             raise CaseError(f"vary {key}={text.strip()}: {FORM}") from None
+        if not (math.isfinite(first) and math.isfinite(last)):
+            raise CaseError(f"vary {key}={text.strip()}: expected two finite numbers")
         if not math.isfinite(last - first):
             raise CaseError(f"vary {key}={text.strip()}: expected two numbers, not that far apart")
         if number > MOST:

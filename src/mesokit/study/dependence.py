@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
+from mesokit.report.caption import below as write_below
+from mesokit.report.finish.labels import fit_labels
+from mesokit.report.finish.legend import entries, legend_above
 from mesokit.report.style import (
     COLOURS,
     LINES,
@@ -19,7 +22,6 @@ from mesokit.report.style import (
     fonts,
     height_of,
     labelled,
-    legend_above,
     sparse_logarithm,
 )
 from mesokit.seam.result import Array, with_error
@@ -32,6 +34,9 @@ DECADE = 8.0  # largest over smallest value from which the other axis is logarit
 WILD = 10.0  # median error bars: one that is longer does not set the axis
 MARGIN = 0.05  # of an axis, at either end
 NAMED = 3  # points that a legend names
+SYMBOL = 0.02  # of the height of a figure, a symbol
+ROUGH = "0.4"  # grey of an approximate theory
+MARK: dict[str, Any] = {"ls": "none", "marker": "_", "ms": 14, "mew": 1.3}  # theory at a point
 TICKS = 6  # of values within a decade, each of which has its own
 
 
@@ -48,7 +53,9 @@ class Curve(NamedTuple):
     `theory` is what the expectation is, in a few words. `between` gives it between the points as
     well, for an axis that is logarithmic or not, or None where it cannot. `seeds` are rows (m, 3)
     of place, value and error: the runs that a point was pooled from. `cautions` are what must be
-    known to read points (n,), in words that go on with "at", and of which points.
+    known to read points (n,), in words that go on with "at", and of which points. `rough` says
+    where theory is approximate (n,), `steady` where the run measured the state that theory is of;
+    None means nowhere and everywhere.
     """
 
     label: str
@@ -60,6 +67,17 @@ class Curve(NamedTuple):
     between: Callable[[bool], Theory | None] | None = None
     seeds: Array = np.empty((0, 3))
     cautions: Sequence[tuple[str, NDArray[np.bool_]]] = ()
+    rough: NDArray[np.bool_] | None = None
+    steady: NDArray[np.bool_] | None = None
+
+    @property
+    def ratios(self) -> tuple[Array, Array]:
+        """Measured over expected and its error (n,), nan where that says nothing."""
+        use = (self.expected != 0) & (self.error < abs(self.expected))
+        if self.steady is not None:
+            use &= self.steady
+        expected = np.where(use, self.expected, np.nan)
+        return self.value / expected, self.error / abs(expected)
 
 
 def draw(
@@ -95,16 +113,24 @@ def draw(
     wide = WIDTH if width is None else width
     with mpl.rc_context(STYLE | fonts(wide)):
         figure = ShownFigure(figsize=(wide, height_of(wide)), layout="constrained")
-        ax = figure.subplots()
+        below: Any = None
+        if _hides_errors(curves):
+            ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
+        else:
+            ax = figure.subplots()
+        notes: list[str] = []
         for set_scale, logs in zip((ax.set_xscale, ax.set_yscale), scales, strict=True):
             set_scale("log" if logs else "linear")
         for number, curve in enumerate(curves):
             _draw(ax, curve, number, note, scales)
+            _say(notes, curve, np.isnan(curve.value), "undetermined at")
             if fit is not None:
                 _draw_fit(ax, curve, number, fit)
             for what, some in curve.cautions:
-                _caution(ax, curve, what, some)
-        _leave_out_wild(ax, curves, scales[1])
+                _caution(notes, curve, what, some)
+            if below is not None:
+                _draw_ratio(below, curve, number)
+        _leave_out_wild(ax, curves, scales[1], notes)
         for axis in (ax.xaxis, ax.yaxis):
             if axis.get_scale() == "log":
                 sparse_logarithm(axis, *axis.get_view_interval())
@@ -112,11 +138,15 @@ def draw(
         if scales[0] and len(places) <= TICKS and places[-1] < 10 * places[0]:
             ax.set_xticks(places, [f"{place:g}" for place in places])
             ax.set_xticks([], minor=True)
-        ax.set_xlabel(labelled(*x))
+        (below or ax).set_xlabel(labelled(*x))
         ax.set_ylabel(labelled(y[0], y[1]))
-        ax.legend(loc="best")
         if wide < WIDTH:
             legend_above(ax)
+        else:
+            found = entries([ax])
+            ax.legend(found.values(), found, loc="best")
+        write_below(figure, "\n".join(notes))
+        fit_labels(figure)
         return figure
 
 
@@ -177,23 +207,64 @@ def _draw(ax: Any, curve: Curve, number: int, note: str, scales: tuple[bool, boo
         dots = {"ms": 2.5, "alpha": 0.55, "color": colour, "zorder": 2.5}
         label = ", ".join(filter(None, [curve.label, "each run"]))
         ax.plot(*curve.seeds[:, :2].T, "o", label=label, **dots)
-    _say(ax, curve, np.isnan(curve.value), "undetermined at")
+    if np.isfinite(curve.expected).any():
+        _draw_theory(ax, curve, LINES[number % len(LINES)], scales)
+
+
+def _draw_theory(ax: Any, curve: Curve, dash: Any, scales: tuple[bool, bool]) -> None:
+    """A line where theory holds, and a grey dashed one where it is approximate."""
     known = np.isfinite(curve.expected)
-    if known.any():
-        label = f"{curve.theory}, {curve.label}" if curve.label else curve.theory
-        look = {"ls": LINES[number % len(LINES)], "color": "black", "lw": 1.3, "zorder": 2}
-        x, expected = curve.x, curve.expected
-        if not _straight(x[known], expected[known], scales):
-            between = curve.between(scales[0]) if curve.between else None
-            if between is not None:
-                x, expected = between
-            else:  # straight pieces, which no theory says
-                look |= {"ls": ":", "lw": 0.8, "marker": "_", "ms": 14, "mew": 1.3}
-                label = f"{label} at the points"
-        ax.plot(x, expected, label=label, **look)
-        known = np.isfinite(expected)
-        alone = known & ~np.append(known[1:], False) & ~np.append(False, known[:-1])
-        ax.plot(x[alone], expected[alone], "_", ms=14, mew=1.3, color="black", zorder=2)
+    x, expected, marks, where = curve.x, curve.expected, dict[str, Any](), ""
+    if not _straight(x[known], expected[known], scales):
+        between = curve.between(scales[0]) if curve.between else None
+        if between is not None:
+            x, expected = between
+        else:  # no theory is known for what would join the points
+            marks, where = MARK, ", at the points"
+    of = f", {curve.label}" * bool(curve.label)
+    holds, rough = _parts(curve, x, expected, joined=not marks)
+    black: dict[str, Any] = {"ls": dash, "color": "black"}
+    grey: dict[str, Any] = {"ls": "--", "color": ROUGH}
+    parts = (holds, curve.theory, black), (rough, "theory, approximate", grey)
+    for part, words, look in parts:
+        if np.isfinite(part).any():
+            look = {"lw": 1.3, "zorder": 2, **look, **marks}
+            ax.plot(x, part, label=f"{words}{of}{where}", **look)
+    known = np.isfinite(expected)
+    alone = known & ~np.append(known[1:], False) & ~np.append(False, known[:-1])
+    ax.plot(x[alone], expected[alone], color="black", zorder=2, **MARK)
+
+
+def _parts(curve: Curve, x: Array, expected: Array, joined: bool) -> tuple[Array, Array]:
+    """Expectations at places (m,) where theory holds, and where it is approximate; nan elsewhere.
+
+    Between two points theory holds if it does at both; a line that is `joined` begins at a point
+    where theory holds.
+    """
+    rough = np.zeros(len(curve.x), bool) if curve.rough is None else curve.rough
+    low = np.maximum(np.searchsorted(curve.x, x, "right") - 1, 0)  # the point at or below a place
+    high = np.minimum(np.searchsorted(curve.x, x, "left"), len(rough) - 1)
+    holds = ~rough[low] & ~rough[high]
+    at = joined & (low == high)
+    near = rough[np.maximum(low - 1, 0)] | rough[np.minimum(high + 1, len(rough) - 1)]
+    return np.where(holds, expected, np.nan), np.where(~holds | (at & near), expected, np.nan)
+
+
+def _hides_errors(curves: Sequence[Curve]) -> bool:
+    """Whether most error bars of what has theory are smaller than the symbols."""
+    ratios = np.concatenate([curve.ratios[0] for curve in curves])
+    error = np.concatenate([curve.error for curve in curves])[np.isfinite(ratios)]
+    value = np.concatenate([curve.value for curve in curves])
+    value = value[np.isfinite(value)]
+    return bool(len(error) > 1 and np.median(error) < SYMBOL * np.ptp(value))
+
+
+def _draw_ratio(ax: Any, curve: Curve, number: int) -> None:
+    """Measured over expected, of points that have both."""
+    look: Any = {"mfc": "white", "color": COLOURS[number % len(COLOURS)], "ms": 4, "capsize": 2}
+    ax.axhline(1, color="black", lw=1, zorder=1)
+    ax.errorbar(curve.x, *curve.ratios, fmt=MARKERS[number % len(MARKERS)], **look)
+    ax.set_ylabel("measured\n/ theory")
 
 
 def _draw_fit(ax: Any, curve: Curve, number: int, fit: str) -> None:
@@ -203,7 +274,7 @@ def _draw_fit(ax: Any, curve: Curve, number: int, fit: str) -> None:
     ax.plot(at, found(at), "--", color=colour, lw=1.1, label=found.legend, zorder=1)
 
 
-def _leave_out_wild(ax: Any, curves: Sequence[Curve], logs: bool) -> None:
+def _leave_out_wild(ax: Any, curves: Sequence[Curve], logs: bool, notes: list[str]) -> None:
     """Let the axis show the other numbers where a few error bars are longer than all of these."""
     rows = [np.stack([c.x, c.value, c.error], axis=1) for c in curves]
     value, error = np.concatenate([*rows, *(c.seeds for c in curves)])[:, 1:].T
@@ -223,11 +294,11 @@ def _leave_out_wild(ax: Any, curves: Sequence[Curve], logs: bool) -> None:
     limits = np.array([low - margin, high + margin])
     ax.set_ylim(*(np.exp(limits) if logs else limits))
     for curve in curves:
-        _say(ax, curve, curve.error > most, "error bar beyond the axis:")
+        _say(notes, curve, curve.error > most, "error bar beyond the axis:")
 
 
-def _say(ax: Any, curve: Curve, some: Any, what: str) -> None:
-    """Name points of a curve in the legend."""
+def _say(notes: list[str], curve: Curve, some: Any, what: str) -> None:
+    """Name points of a curve in a note below the figure."""
     if not some.any():
         return
     points = zip(curve.x[some], curve.value[some], curve.error[some], strict=True)
@@ -237,18 +308,18 @@ def _say(ax: Any, curve: Curve, some: Any, what: str) -> None:
     ]
     words += [f"{some.sum() - NAMED} more"] * bool(some.sum() > NAMED)
     of = f"{curve.label}, " * bool(curve.label)
-    ax.plot([], [], " ", label=f"{of}{what} {', '.join(words)}")
+    notes.append(f"{of}{what} {', '.join(words)}")
 
 
-def _caution(ax: Any, curve: Curve, what: str, some: NDArray[np.bool_]) -> None:
-    """Say in the legend of which points something must be known."""
+def _caution(notes: list[str], curve: Curve, what: str, some: NDArray[np.bool_]) -> None:
+    """Say below the figure of which points something must be known."""
     if not some.any():
         return
     words = [f"{x:g}" for x in curve.x[some][:NAMED]]
     words += [f"{some.sum() - NAMED} more"] * bool(some.sum() > NAMED)
     where = "all points" if some.all() and len(some) > 1 else ", ".join(words)
     of = f"{curve.label}, " * bool(curve.label)
-    ax.plot([], [], " ", label=f"{of}{what} at {where}")
+    notes.append(f"{of}{what} at {where}")
 
 
 class Fitted(NamedTuple):

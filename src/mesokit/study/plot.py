@@ -140,6 +140,7 @@ def _curve(label: str, keys: Sequence[str], rows: list[Pooled], between: Between
         for one in row.each
         if row.runs > 1 and np.isfinite(one.measured)
     ]
+    steady = np.array([number.steady for number in numbers])
     return Curve(
         label,
         np.array(values, float)[order],
@@ -150,19 +151,20 @@ def _curve(label: str, keys: Sequence[str], rows: list[Pooled], between: Between
         between and functools.partial(between, rows, keys),
         np.array(seeds).reshape(-1, 3),
         [
-            ("not steady", np.array([not n.steady for n in numbers])),
+            ("not steady", ~steady),
             ("error bar is a lower bound", np.array([LOWER_BOUND in n.note for n in numbers])),
         ],
+        np.array([number.approximate for number in numbers]),
+        steady,
     )
 
 
 def _theory(numbers: Sequence[Comparison]) -> str:
-    """What is expected, in a few words."""
+    """What is expected where it is not approximate, in a few words."""
     if not all(number.steady for number in numbers):
         return "theory of the steady flow, not reached"
-    if any(number.approximate for number in numbers):
-        return "theory, approximate"
-    parts = numbers[0].note.split("; ")
+    known = [n for n in numbers if np.isfinite(n.expected) and not n.approximate]
+    parts = known[0].note.split("; ") if known else []
     name = "; ".join(part for part in parts if "lower bound" not in part)
     return f"theory, {name}" if 0 < len(name) < SHORT else "theory"
 

@@ -49,6 +49,10 @@ def explain(path: str = "") -> list[Explanation]:
         >>> explain("pulls")[0].path
         'solutes.pulls'
     """
+    if path.endswith(".toml"):
+        raise CaseError(
+            f"{path}: expected a key of a case, such as run.steps; mesokit check explains a file"
+        )
     whole = kept_schema()
     definitions = whole["definitions"]
     if not path:

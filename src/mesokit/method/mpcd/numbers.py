@@ -8,6 +8,7 @@ from mesokit import theory
 from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.describe.shown import Shown
 
+SHEARED = "lees-edwards"  # between images that move
 PIPE = "Hagen-Poiseuille"  # the flow along a round pipe
 TIMES = 3  # in which a flow builds up to 5 %, in units of that to 1/e
 Row = tuple[str, str, str]  # what, its value, and a word on it
@@ -86,7 +87,7 @@ class Derived(Shown):
             if self.reynolds is not None:
                 rows.append(("Reynolds number", number(self.reynolds), self._reynolds_of()))
             if self.mach is not None:
-                rows.append(("Mach number", number(self.mach), ""))
+                rows.append(("Mach number", number(self.mach), self._mach_of()))
         else:
             return []
         if self.steady_time is not None:
@@ -94,6 +95,13 @@ class Derived(Shown):
             steps += ", without obstacles" if self.flow_bound else ""
             rows.append(("time to build up", number(self.steady_time), steps))
         return rows
+
+    def _mach_of(self) -> str:
+        """Between images that move only the flow within a cell has to be slow."""
+        if self.mach is None or self.flow != SHEARED:
+            return ""
+        within = 2 * self.mach / self.flow_size
+        return f"at the edges of the box; {number(within)} across a cell, where at most 0.2 is fine"
 
     def _reynolds_of(self) -> str:
         return "of the mean velocity and the diameter" if self.flow == PIPE else ""

@@ -1,1 +1,1 @@
-"""What happens to a drawing afterwards: several in one plot, where it comes from, its file."""
+"""What happens to a drawing afterwards: legend, several in one plot, where it comes from, file."""

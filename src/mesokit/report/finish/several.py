@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 from weakref import WeakKeyDictionary
 
+from mesokit.report.finish.legend import along_rows, entries
 from mesokit.report.style import COLOURS
 
 MEASURED, THEORY = "measured", "theory"  # how the labels of a drawing begin
@@ -107,7 +108,10 @@ def _renew_legend(ax: Any) -> None:
     if old is None:
         return
     place, anchor = old._loc, old.get_bbox_to_anchor().transformed(ax.transAxes.inverted())
+    shown = along_rows(entries([ax]), old._ncols)
     ax.legend(
+        shown.values(),
+        shown,
         loc=place,
         bbox_to_anchor=(anchor.x0, anchor.y0),
         ncols=old._ncols,

@@ -98,7 +98,8 @@ def sources(
     trajectory: TrajectoryReader | State | None,
     view: View = ALL,
 ) -> Found:
-    """What there is to draw over two axes (those of the first map unless said), best first.
+    """What there is to draw over two axes, best first. Unless said they are those of the first map,
+    or show how spheres fall.
 
     A map over the same axes in the other order is turned.
 
@@ -108,7 +109,7 @@ def sources(
     from mesokit.report.flow.frame_source import FrameSource
     from mesokit.report.flow.setting import Setting
     from mesokit.report.flow.sites import SiteSource
-    from mesokit.report.flow.spheres import SphereSource
+    from mesokit.report.flow.spheres import SphereSource, from_the_side
     from mesokit.report.flow.trajectory_source import TrajectorySource
 
     kept = [result for result in results.values() if result.samples]
@@ -118,7 +119,9 @@ def sources(
         maps += [(axes_of(r), r) for r in sorted(found_now, key=lambda r: "component" not in r.x)]
     axes = view.axes
     _check(case, axes)
-    chosen = axes or (maps[0][0] if maps else ("x", "y"))
+    spheres = trajectory is not None and trajectory.diameter is not None
+    usual = from_the_side(case.spheres.gravity) if spheres else ("x", "y")
+    chosen = axes or (maps[0][0] if maps else usual)
     remedy = REMEDY if issubclass(FlowFrames, method_of(case).observables) else OF_TRAJECTORIES
     found = Found(chosen, [axes for axes, _ in maps if set(axes) != set(chosen)], remedy)
     for over, result in maps:

@@ -44,7 +44,7 @@ class SphereSource:
 
     def __init__(self, case: Case, reader: TrajectoryReader | State, view: View) -> None:
         self.case, self.reader, self.view = case, reader, view
-        self.axes, self.time = view.axes or from_the_side(case.spheres.gravity), reader.time
+        self.axes, self.time = view.axes or ("x", "y"), reader.time
         self.whole = np.arange(len(reader))
         self.setting = Setting.of(case, self.axes)
         self.third = next((k for k in range(3) if k not in self.setting.columns), 2)

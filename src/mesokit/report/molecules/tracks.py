@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from mesokit.report.finish.legend import legend_above
 from mesokit.report.style import COLOURS, LINES, labelled
 from mesokit.seam.result import Result
 
@@ -40,19 +41,8 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     if len(time) > 1:
         panels[-1].set_xlim(time[0], time[-1])
     panels[-1].set_xlabel(labelled("time $t$", result.units["time"]))
-    handles, labels = panels[0].get_legend_handles_labels()
-    if handles:
-        title = "molecule" if len(result.x["molecule"]) <= SHOWN else f"molecule (first {SHOWN})"
-        panels[0].legend(
-            handles,
-            labels,
-            loc="lower left",
-            bbox_to_anchor=(0, 1),
-            ncols=8,
-            title=title,
-            borderaxespad=0.2,
-            handlelength=1.5,
-        )
+    title = "molecule" if len(result.x["molecule"]) <= SHOWN else f"molecule (first {SHOWN})"
+    legend_above(panels[0], title=title, handlelength=1.5)
     figure.align_ylabels()
 
 

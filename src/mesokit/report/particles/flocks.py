@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.report.style import COLOURS, LINES, labelled, legend_above
+from mesokit.report.finish.legend import legend_above
+from mesokit.report.style import COLOURS, LINES, labelled
 from mesokit.seam.result import Result
 
 MEASURED = r"measured, $\pm$ one standard error"

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from mesokit.report.finish.legend import legend_of
 from mesokit.report.style import COLOURS, lettered
 from mesokit.seam.result import Result
 
@@ -29,8 +30,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         panels[0, k].set_ylabel(result.label if k == 0 else "")
     panels[1, 0].set_ylabel("measured\n/ theory")
     lettered(list(panels[0]))
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=len(handles))
+    legend_of(figure, [panels[0, 0]])
 
 
 def _label(result: Result, k: int) -> str:

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from mesokit.report.curve import BARS
-from mesokit.report.style import COLOURS, labelled, legend_above, sparse_logarithm
+from mesokit.report.finish.legend import legend_above
+from mesokit.report.style import COLOURS, labelled, sparse_logarithm
 from mesokit.seam.result import Result
 
 GUIDED = 4  # of the last points, through whose middle a guide goes

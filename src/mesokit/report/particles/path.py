@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from mesokit.report.caption import mathematics
-from mesokit.report.style import COLOURS, labelled, legend_above
+from mesokit.report.finish.legend import legend_above
+from mesokit.report.style import COLOURS, labelled
 from mesokit.seam.result import Result
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from mesokit.report.caption import rounded, symbols
+from mesokit.report.finish.legend import legend_of
 from mesokit.report.style import COLOURS, labelled
 from mesokit.seam.result import Result
 
@@ -35,9 +36,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         word = "step" if step == 1 else "steps"
         time = f"{rounded(result.extra['time'][k])}\\,{symbols(result.units['time'])[1:-1]}"
         panels[0, k].set_title(f"{step} {word}, $t = {time}$", fontsize=10)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    if handles:
-        figure.legend(handles, labels, loc="outside upper center", ncols=len(handles))
+    legend_of(figure, [panels[0, 0]])
 
 
 def _height(result: Result, first: int) -> float:

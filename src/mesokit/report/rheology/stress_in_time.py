@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from mesokit.report.caption import mathematics
-from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
+from mesokit.report.finish.legend import legend_above
+from mesokit.report.style import COLOURS, LINES, MARKERS, labelled
 from mesokit.seam.result import Result
 
 SYMBOLS = {

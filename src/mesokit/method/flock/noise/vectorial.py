@@ -21,9 +21,9 @@ from mesokit.theory.polar_order import CrowdOrder, vectorial_order
 
 @component
 class VectorialNoise(Noise):
-    """To the sum of the headings of the n birds in reach n times the strength is added, in a
-    direction at random; the bird flies along that (Gregoire and Chate, Phys. Rev. Lett. 92, 025702
-    (2004))."""
+    """Noise is added to the direction of each neighbour: to the sum of the headings of the n birds
+    in reach, a vector in a random direction is added that is n times the strength long. The bird
+    flies along the sum (Gregoire and Chate, Phys. Rev. Lett. 92, 025702 (2004))."""
 
     rule: Literal["vectorial"] = tag("vectorial")
     strength: float = param(

@@ -108,9 +108,9 @@ def cheaper(name: str, factor: float) -> tuple[str, str, str]:
     """A row of `mesokit check`: which method is cheaper, and how many times.
 
     >>> cheaper("event-driven", 1938.0)
-    ('cheaper', 'event-driven', 'by a factor of 1900, of a core')
+    ('cheaper', 'event-driven', 'about 1900 times, in time on one core')
     """
-    return "cheaper", name, f"by a factor of {float(f'{factor:.2g}'):g}, of a core"
+    return "cheaper", name, f"about {float(f'{factor:.2g}'):g} times, in time on one core"
 
 
 def comes_to_rest(case: Case, loses: bool, heated: bool) -> bool:

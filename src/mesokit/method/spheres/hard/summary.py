@@ -79,7 +79,8 @@ def _beside(
     yield (
         "as soft spheres",
         duration_text(max(soft, 0.1)),
-        f"contacts of {contact:.3g}, {cost.STEPS} steps each: {per_flight:.3g} in a free flight",
+        f"a contact lasts {contact:.3g} and takes {cost.STEPS} steps, "
+        f"a free flight {float(f'{per_flight:.3g}'):g}",
     )
     if rests:
         yield cost.AT_REST
