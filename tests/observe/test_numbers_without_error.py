@@ -5,7 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from mesokit import Box, Case, Conservation, Fluid, GranularTemperature, HardCollision, Run, Stress
+from mesokit import (
+    Box,
+    Case,
+    Conservation,
+    DensityField,
+    Fluid,
+    GranularTemperature,
+    HardCollision,
+    Plates,
+    Run,
+    Stress,
+    Uniform,
+)
 from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.short_run import without_error
 from mesokit.seam.result import Comparison, Result
@@ -65,6 +77,33 @@ def test_a_stress_of_few_samples_says_that_it_has_no_error_bar(samples, words):
     found = result_of(accumulator, case).comparisons
     bare = [one for one in found if math.isnan(one.error)]
     assert bare and all(words in one.note and words in str(one) for one in bare)
+
+
+@pytest.mark.parametrize("percent", [0.0, 3.0, 12.0])
+def test_the_spread_of_a_density_has_the_error_of_its_seeds(percent):
+    """Of a flat map it is no less than the scatter of seeds, and below the noise of a bin."""
+    case = Case(
+        run=Run(steps=9),
+        box=Box([12, 12]),
+        fluid=Fluid(force=Uniform([0.01, 0.0])),
+        walls=[Plates("y")],
+        observe=[DensityField(every=1)],
+    )
+    wave = 1 + 0.01 * percent * np.sqrt(2) * np.sin(2 * np.pi * (np.arange(12) + 0.5) / 12)
+    found = []
+    for seed in range(40):
+        rng, accumulator = np.random.default_rng(seed), case.observe[0].accumulator(case)
+        for _ in range(500):
+            accumulator.blocks.add(rng.poisson(7 * np.tile(wave, (12, 1)))[None] * 1.0)
+        (one,) = accumulator.result().comparisons
+        found.append((one.measured, one.error))
+    spread, error = np.transpose(found)
+    if percent:
+        assert spread.mean() == pytest.approx(percent, rel=0.1)
+        assert spread.std() / error.mean() == pytest.approx(1, abs=0.35)
+    else:
+        noise = 100 / np.sqrt(7 * 500)  # of one bin
+        assert np.sqrt((spread**2).mean()) < error.mean() < 0.6 * noise
 
 
 def test_counts_and_what_must_be_exact_need_no_words():

@@ -10,8 +10,10 @@ from mesokit.case.component import component, tag
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.field import Array, Field, FieldAccumulator
+from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Comparison, Result
+from mesokit.statistics import correlated_error
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -84,5 +86,14 @@ class DensityFieldAccumulator(FieldAccumulator):
         )
         mean = float(density.mean())
         variance = float(((density - mean) ** 2 - error**2).mean())
-        spread = 100 * np.sqrt(max(variance, 0.0)) / mean
-        return (Comparison("density spread", spread, np.nan, unit="%", note=SPREAD),)
+        spread = float(np.sqrt(max(variance, 0.0)))
+        # what moves the map as a whole, and the noise of squares, which is left without any spread
+        gradient = np.zeros(self.blocks.mean().shape)
+        gradient[0][open_bins] = 2 * (density - mean) / (share[open_bins] * density.size)
+        blocks = of_mean(self.blocks)
+        residuals = blocks.residuals.reshape(len(blocks.residuals), -1) @ gradient.ravel()
+        moved = float(correlated_error(residuals, blocks.weights))
+        off = float(np.hypot(moved, np.sqrt(2 * (error**4).sum()) / density.size))
+        off = min(off / (2 * spread), off**0.5) if spread else off**0.5
+        values = 100 * spread / mean, 100 * off / mean
+        return (Comparison("density spread", *values, unit="%", note=SPREAD),)

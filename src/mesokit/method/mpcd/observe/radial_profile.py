@@ -21,7 +21,7 @@ from mesokit.method.mpcd.observe.shared.shells import (
     shell_edges,
     shell_volumes,
 )
-from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH_FOR_CURVATURE, of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
@@ -215,7 +215,7 @@ class RadialProfileAccumulator(ShellAccumulator):
         """Where blocking cannot see the slowest eddies, which decay at this rate: a note."""
         runs, step = self.blocks.series, self.case.fluid.timestep
         time = self.blocks.count / runs * self.observable.every * step
-        if not 0 < time * rate < ENOUGH:
+        if not 0 < time * rate < ENOUGH_FOR_CURVATURE:
             return ""
         return of_relaxations(time * rate, runs)
 

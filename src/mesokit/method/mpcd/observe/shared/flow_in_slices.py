@@ -14,7 +14,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
-from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
+from mesokit.observe.shared.short_run import ENOUGH_FOR_CURVATURE, of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.result import Comparison
 
@@ -117,7 +117,7 @@ class Seen:
         blocks, step = self.profile.blocks, self.case.fluid.timestep
         time = blocks.count / blocks.series * self.profile.observable.every * step
         times = time * np.pi**2 * viscosity / self.edges[-1] ** 2
-        if not 0 < times < ENOUGH:
+        if not 0 < times < ENOUGH_FOR_CURVATURE:
             return ""
         return of_relaxations(times, blocks.series)
 
