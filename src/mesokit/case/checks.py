@@ -42,7 +42,7 @@ def is_offered(part: Any, method: str, observables: tuple[type, ...]) -> bool:
 
 
 def offered(case: Any, method: str, observables: tuple[type, ...]) -> Iterator[str]:
-    """Observables of the method, or of somebody who says that they are for it."""
+    """Errors: observables that the method does not offer, and that do not name the method."""
     for i, observable in enumerate(case.observe):
         if not is_offered(type(observable), method, observables):
             known = sorted(

@@ -109,7 +109,7 @@ def option(*, default: Any, doc: str, kw_only: Literal[True], unit: str = "", **
 def tag(value: str, *, init: Literal[False] = False) -> Any:
     """The field, one of TAGS, whose value names the component in a case file.
 
-    Python code has no need to give it, and type checkers (`init`) offer it to nobody.
+    Python code has no need to give it, and type checkers (`init`) do not offer it.
     """
     return Field(value, description="name of the component", kw_only=True)
 

@@ -1,4 +1,4 @@
-"""Commands on several ranks: who takes part, and how they are started on this machine."""
+"""Commands on several ranks, and how ranks are started on this machine."""
 
 import contextlib
 import functools

@@ -65,7 +65,7 @@ def delete_folder(folder: Path) -> None:
 
 
 def _replace(temporary: Path, path: Path) -> None:
-    """Rename; where a file that somebody reads cannot be replaced, wait for him a little."""
+    """Rename; where a file that another process reads cannot be replaced, try again for a while."""
     for pause in PAUSES if sys.platform == "win32" else ():
         with suppress(PermissionError):
             return os.replace(temporary, path)

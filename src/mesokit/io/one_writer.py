@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @contextlib.contextmanager
 def alone(directory: RunDirectory | None) -> Iterator[None]:
-    """Nobody else writes there meanwhile; the system ends this with the process, even by a kill.
+    """Hold the lock of a folder; the system releases it with the process, even by a kill.
 
     Raises RunError if another writes there. Where a file system knows no locks, all may write.
     """
@@ -30,7 +30,7 @@ def alone(directory: RunDirectory | None) -> Iterator[None]:
         said = f"{directory.path}: another process is writing there; wait for it, or stop it first"
         raise RunError(said) from None
     except (OSError, NotImplementedError):  # no locks here, or the folder cannot be written:
-        pass  # which is told by those who write
+        pass  # writing will report it
     try:
         yield
     finally:

@@ -86,7 +86,7 @@ def psi_6(places: Array, box: Array) -> NDArray[np.complex128]:
     n = len(places)
     shifts = np.array([(i, j) for i in (0, -1, 1) for j in (0, -1, 1)], float)
     everywhere = (places + (shifts * box)[:, None]).reshape(-1, 2)
-    # images farther away than a few mean distances are nobody's neighbours
+    # images farther away than a few mean distances are neighbours of none
     margin = 6.0 * np.sqrt(box.prod() / n)
     near = ((everywhere > -margin) & (everywhere < box + margin)).all(axis=1)
     near[:n] = True

@@ -224,7 +224,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         return found
 
     def result(self) -> Result:
-        """g(r), beside 1 where nobody knows of others."""
+        """g(r), beside 1 where particles are independent."""
         expected, found = self.expected(), self.means()
         return Result(
             quantity="radial-distribution",

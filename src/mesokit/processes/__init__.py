@@ -1,1 +1,1 @@
-"""Who runs a case together: one process, or the ranks that an MPI launcher has started."""
+"""Processes that run a case together: one, or the ranks that an MPI launcher has started."""

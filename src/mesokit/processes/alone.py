@@ -70,7 +70,7 @@ class Alone:
         """What to do after the steps in hand: decided by rank 0, before them if others must know.
 
         `decide` is given the number of a signal that has come to any rank, `signal` says which has
-        come to this one. What is returned must be called, also where nobody asks any more.
+        come to this one. What is returned must be called, even if it is not needed any more.
         """
         return lambda: decide(signal())
 

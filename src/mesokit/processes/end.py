@@ -1,4 +1,4 @@
-"""How a rank ends that others may wait for: one of them says why, and nobody stays behind."""
+"""End of all ranks after an error in one: one rank prints the reason, and none is left running."""
 
 import os
 import sys
@@ -51,7 +51,7 @@ def abort(comm: Any, status: int) -> None:
 
 
 def watch(here: Any) -> None:
-    """What nobody has caught ends all ranks, as `here.leave` does."""
+    """An exception that is not caught ends all ranks, as `here.leave` does."""
     earlier = sys.excepthook
 
     def hook(kind: type[BaseException], value: BaseException, trace: Any) -> None:

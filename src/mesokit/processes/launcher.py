@@ -1,6 +1,6 @@
-"""What the one who has started this process says of it: whether there are others, and which it is.
+"""Number and rank of this process, from the environment that an MPI launcher sets.
 
-MPI itself is asked only where there are several, as it takes time to load.
+MPI itself is loaded only where there are several processes, as that takes time.
 """
 
 import os

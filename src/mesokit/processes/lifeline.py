@@ -17,7 +17,7 @@ PAUSE = 0.5  # seconds between two questions
 
 @contextlib.contextmanager
 def held(folder: Path) -> Iterator[None]:
-    """Be known to live. Where a file system knows no locks, nobody asks for it."""
+    """Hold a lock while this process lives; a file system without locks has none."""
     from filelock import FileLock
 
     lock = FileLock(folder / LOCK)
@@ -40,7 +40,7 @@ def end_with(folder: Path) -> None:
 def _wait(folder: Path) -> None:
     from filelock import FileLock
 
-    while (folder / LOCK).exists():  # it goes with the one who made it
+    while (folder / LOCK).exists():  # the process that made it removes it
         try:
             FileLock(folder / LOCK).acquire(poll_interval=PAUSE)
             break

@@ -32,7 +32,7 @@ CURSOR = "\x1b[?25h\n"  # shown again, where a bar has been cut off
 
 
 class End(NamedTuple):
-    """How ranks have ended: the status, and if nobody has said why, what is known of it."""
+    """How ranks have ended: the status, and the reason as far as it is known."""
 
     status: int
     why: str
@@ -116,7 +116,7 @@ def _pass_on(process: subprocess.Popen[str]) -> list[str]:
             if NOISE.search(line) or not line.strip():
                 kept.append(line)
                 continue
-            with contextlib.suppress(OSError):  # nobody is there to read it
+            with contextlib.suppress(OSError):  # the reader has left
                 stream.write(line)
                 stream.flush()
 

@@ -1,7 +1,7 @@
-"""One of several ranks of MPI: what they tell one another, apart from the particles.
+"""One of several ranks of MPI: their messages, apart from those of particles.
 
-Nobody waits here while steps are done: orders come one ahead, and signals are told by messages that
-rank 0 looks for. Where all wait for rank 0, which writes, they sleep in between.
+No rank waits here during steps: orders are sent one leg ahead, and signals by messages that rank 0
+receives. While all wait for rank 0 to write, they sleep.
 """
 
 import contextlib
@@ -158,7 +158,7 @@ class Several:
         """What to do after the steps in hand: decided by rank 0, before them.
 
         `decide` is given the number of a signal that has come to any rank, `signal` says which has
-        come to this one. What is returned must be called, also where nobody asks any more.
+        come to this one. What is returned must be called, even if it is not needed any more.
         """
         by = self.heard(signal())
         words = np.array(decide(by) if self.root else (0, 0, 0), np.int64)

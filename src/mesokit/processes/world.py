@@ -1,4 +1,4 @@
-"""Who is there: this process alone, or one of the ranks that an MPI launcher has started."""
+"""The processes of a run: this one alone, or one of the ranks that an MPI launcher has started."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _known: World | None = None
 
 
 def world() -> World:
-    """All who run a case together. Of several ranks, all must ask at the same time first.
+    """The processes that run a case together. The first call is collective: all ranks make it.
 
     Raises RunError where MPI is asked for and not there, and for ranks of different versions.
     """

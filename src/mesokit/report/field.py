@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 FEW = 10  # samples: of fewer a mean says how many
-NO_FLUID = "0.85"  # grey of bins without fluid, where nobody knows the solids
+NO_FLUID = "0.85"  # grey of bins without fluid, where the solids are unknown
 DENSITIES = 0.5, 99.5  # percent of the bins: from where to where the colours of a density go
 FLAT = 0.5  # of the highest density: where the lowest is above it, colours start there
 

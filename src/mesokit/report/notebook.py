@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 class ShownFigure(Figure):
     """A figure made without pyplot, which draws itself where a notebook asks for a picture.
 
-    `origin` says where it comes from (`mesokit.report.finish.origin`), None if nobody knows.
+    `origin` says where it comes from (`mesokit.report.finish.origin`), None if unknown.
     """
 
     origin: Any = None

@@ -160,7 +160,7 @@ class Reporter:
         self.line = line
 
     def _say(self, text: str) -> None:
-        with contextlib.suppress(OSError):  # a run does not end because nobody can be told of it
+        with contextlib.suppress(OSError):  # a run goes on if its progress cannot be written
             print(text, file=self.stream, flush=True)
 
     def _open(self) -> None:

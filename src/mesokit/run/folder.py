@@ -31,7 +31,7 @@ class Folder:
     """Case, frames, log, checkpoints, results, and the record of where they come from.
 
     All ranks call the methods, and rank 0 writes: its errors are those of all. All raise RunError
-    for what cannot be written. The lock of the folder is held by who runs.
+    for what cannot be written. The process that runs holds the lock of the folder.
     """
 
     def __init__(self, directory: RunDirectory, case: Case, ranks: World, log: RunLog) -> None:
@@ -147,7 +147,7 @@ class Folder:
 
 
 def existing(output: str | Path, held: contextlib.ExitStack) -> RunDirectory:
-    """The folder of a run that can go on; nobody else writes there as long as that is held."""
+    """The folder of a run that can go on; no other process writes there while it is held."""
     directory = RunDirectory.existing(output)
     held.enter_context(alone(directory))
     if not directory.checkpoint_file.exists() and "merged" in _earlier(directory):

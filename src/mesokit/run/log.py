@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 class RunLog:
-    """Tells what the section [log] of a case asks for; of a case without one, nothing.
+    """Writes the columns of the section [log]; of a case without one, nothing.
 
-    A run calls it as it calls functions of the user (`callbacks`). `tell` is who says a line on
-    the screen.
+    A run calls it as it calls functions of the user (`callbacks`). `tell` prints a line on the
+    screen.
     """
 
     def __init__(self, case: Case) -> None:

@@ -66,9 +66,9 @@ class Loop:
             engine.advance(0)
         note_run(self.schedule.case)
 
-    # Between two meetings all replicas and ranks do their steps and wait for nobody. A meeting is
-    # where they have something to do together: a frame, a callback, a checkpoint; or where it is
-    # time to hear signals and to move the progress bar. Rank 0 decides where the next one is, by
+    # Between two meetings replicas and ranks do their steps without waiting for one another. At a
+    # meeting they do something together: a frame, a callback, a checkpoint; or they
+    # receive signals and move the progress bar. Rank 0 decides where the next one is, by
     # its clock and by the signals that it knows of. It does so before the steps to this one, and
     # not after them, so that the other ranks have been told by the time they arrive here. A signal
     # may then come one meeting late, but no step waits for a message.
@@ -96,7 +96,7 @@ class Loop:
             self._keep_if_due(order, pace)
             progress.update(self.replicas.step)
         else:
-            coming()  # nobody asks for it, but the other ranks wait for what is told
+            coming()  # its value is not needed, but the other ranks wait for the message
         if self.folder is not None and self.replicas.step < self.schedule.last_step:
             self.folder.checkpoint(self.replicas)
 
@@ -146,7 +146,7 @@ class Pace:
         self.last = perf_counter()
 
     def save(self) -> bool:
-        """Whether it is time for a checkpoint; who asks will write one."""
+        """Whether a checkpoint is due; then the caller writes one, and the interval restarts."""
         due = perf_counter() - self.last > self.seconds
         if due:
             self.kept()

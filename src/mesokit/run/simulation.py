@@ -96,8 +96,8 @@ class Simulation(Shown):
                 self.checkpoint()
 
     def _build(self) -> None:
-        """What a simulation has beside its case: copies of it that move, what calls somebody while
-        they do, what stops it, its loop, and its folder as soon as there is one."""
+        """Make the parts of a simulation: replicas, callbacks, stop, loop, and its folder if it has
+        one."""
         require_ranks(self.case, self.ranks.size)
         self.replicas = Replicas(self.case, self.threads)
         self.engine = self.replicas.first.engine

@@ -1,7 +1,7 @@
 """Numbers at an address: how compiled functions share large tables.
 
 An array is seven machine words and a count of its users; a function that takes ten of them spends
-its time on handing them over. An address is one word. Whoever makes a table keeps it alive.
+its time on handing them over. An address is one word. The owner of a table keeps it alive.
 """
 
 from typing import Any

@@ -90,7 +90,7 @@ class Engine(Clock, Protocol):
 
 class Some(Protocol):
     """Some particles of a fluid, whole molecules: numbers (n,), positions in the box, velocities
-    and images (n, d), masses (n,). What is found of one must not depend on who else is there."""
+    and images (n, d), masses (n,). Results for one must not depend on the others."""
 
     @property
     def ids(self) -> Integers: ...

@@ -21,7 +21,7 @@ LOOK_SECONDS = 1.0  # between two looks into the folders of the runs in hand
 
 
 class Workers(Protocol):
-    """Who carries runs: processes, this process, or a cluster."""
+    """Where runs are carried out: processes, this process, or a cluster."""
 
     @property
     def places(self) -> int:
@@ -71,7 +71,7 @@ class NotebookStudyReporter(NotebookReporter, StudyReporter):
 
 
 def reporter_for(progress: StudyReporter | bool | None) -> StudyReporter:
-    """Who tells how a study goes, as `mesokit.report.document.progress.reporter_for` of a run.
+    """The reporter of a study, as `mesokit.report.document.progress.reporter_for` of a run.
 
     Raises CaseError for a reporter that knows of no runs.
     """

@@ -22,7 +22,7 @@ NOTE_SECONDS = 1.0  # between two notes of how far a run has come
 
 
 class Note(Reporter):
-    """Keeps how far a run has come in a file of its folder, for whoever watches the study."""
+    """Writes the progress of a run to a file of its folder, which the study reads."""
 
     def __init__(self, file: Path) -> None:
         super().__init__(quiet=True)
@@ -69,7 +69,7 @@ def _stop(by: signal.Signals) -> None:
 def serve(threads: int, modules: Sequence[str]) -> None:
     """Carry the runs that come on standard input, a folder a line; answer each with a line.
 
-    When nobody is there any more to ask, the run in hand ends at a checkpoint.
+    If the study has ended, the run in hand ends at a checkpoint.
     """
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what others print is no answer

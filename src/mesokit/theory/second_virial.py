@@ -47,5 +47,5 @@ def second_virial(
     total = sum(
         quad(integrand, low, high, epsabs=1e-12)[0] for low, high in itertools.pairwise(ends)
     )
-    core = -(ends[0] ** dimension) / dimension  # nobody comes so near
+    core = -(ends[0] ** dimension) / dimension  # no pair comes so near
     return -0.5 * around * (total + core)

@@ -106,7 +106,7 @@ def _plain(node: Schema) -> Schema:
 
 
 def _said(table: Schema) -> Schema:
-    """A table without what nobody has said."""
+    """A table without the values that are not given."""
     return {key: each for key, each in table.items() if each not in (None, [])}
 
 

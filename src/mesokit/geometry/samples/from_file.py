@@ -31,7 +31,7 @@ class FromFile(FromContents, Shape):
 
     @functools.cached_property
     def digest(self) -> str:
-        """Of its contents; empty where there are none, which whoever reads them will say."""
+        """Digest of its contents; empty if it cannot be read, which is reported on reading."""
         try:
             return hashlib.sha256(self.contents).hexdigest()
         except CaseError:

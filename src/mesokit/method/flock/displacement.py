@@ -63,7 +63,7 @@ class Displacement(mean_square_displacement.Displacement):
         return (walk, "a lone bird") if math.isfinite(walk) else (math.nan, "a straight flight")
 
     def diffusive_from(self) -> float:
-        """When a lone bird has forgotten its heading; among others nobody knows."""
+        """Time in which a lone bird forgets its heading; infinite where it is unknown."""
         if math.isnan(self.memory) or self.memory >= 1:
             return float("inf")
         if self.memory <= 0:

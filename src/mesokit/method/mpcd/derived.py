@@ -254,7 +254,7 @@ def heat_caveat(case: Case, steps: int) -> str:
 
 def _heating(case: Case, across: int, steps: int) -> tuple[float, bool] | None:
     """Relative rise of the temperature by friction in so many steps, and whether that is a bound,
-    as walls cool the fluid and nobody knows how much; None if held."""
+    as walls cool the fluid by an unknown amount; None if held."""
     found = heating(case, across)
     if found is None:
         return None

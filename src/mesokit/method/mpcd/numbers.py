@@ -21,7 +21,7 @@ class Derived(Shown):
     `transport` holds the coefficients of the whole fluid, `solvent` those of a fluid without the
     solutes that are in it.
     `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_bound` that
-    of the empty channel where obstacles stand in the flow and nobody knows its speed beforehand,
+    of the empty channel where obstacles stand in the flow, whose speed is unknown beforehand,
     `flow_size` the size across it, `reynolds` both over the viscosity (in a round pipe the mean
     velocity, as is the custom), `mach` the largest speed over that of sound; `steady_time` is the
     time in which the flow comes within 1/e of its steady state, `relaxation` the longest

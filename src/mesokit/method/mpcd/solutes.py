@@ -36,13 +36,13 @@ class Solutes:
     acts between any two beads, bonded ones too, `wall` between a bead and the nearest surface.
     Between kinds of different `pair` acts what `between` says, else the rule of Lorentz and
     Berthelot mixes the two: the mean of the diameters, the geometric mean of the energies; a kind
-    without a pair potential feels nobody unless `between` says so. With `coupling = "potential"`
-    beads take no part in the collisions but push the particles of the fluid away, or attract them,
-    by `solvent_pair` (Malevanets and Kapral 2000): so they have a size. With `solvent = "random"`
-    there is no fluid: the beads of a cell collide with as many particles as it would hold, of a
-    Maxwellian momentum that is forgotten (random-solvent MPCD; Kikuchi, Gent and Yeomans 2002,
-    Ripoll, Winkler and Gompper 2007): friction and noise as in the fluid, but no hydrodynamics.
-    """
+    without a pair potential acts on no other unless `between` has one. With
+    `coupling = "potential"` beads take no part in the collisions. They push the particles of the
+    fluid away, or attract them, by `solvent_pair` (Malevanets and Kapral 2000), so they have a
+    size. With `solvent = "random"` there is no fluid: the beads of a cell collide with as many
+    particles as it would hold, of a Maxwellian momentum that is forgotten (random-solvent MPCD;
+    Kikuchi, Gent and Yeomans 2002, Ripoll, Winkler and Gompper 2007): friction and noise as in
+    the fluid, but no hydrodynamics."""
 
     polymers: Many[Polymer] = param(doc="the kinds of molecules", min_length=1)
     mass: float = param(1.0, doc="mass of a bead", unit="m", ge=1e-3, le=1e6)

@@ -252,7 +252,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
         if unstable := force.instability(shown, case.box.size, across):
             yield unstable
     if numbers.steady_time is not None and (numbers.flow_speed or numbers.flow_bound):
-        # obstacles make it shorter, nobody knows how much
+        # obstacles make it shorter by an unknown amount
         times, need = (1, "up to") if numbers.flow_bound else (TIMES, "about")
         wait = math.ceil(times * numbers.steady_time / fluid.timestep)
         if case.run.warmup < wait and case.run.steps and fluid.start.run is None:

@@ -1,4 +1,4 @@
-"""Progress of a run as a bar in a notebook, and who tells it where nobody was named."""
+"""Progress of a run as a bar in a notebook, and the reporter that is used unless one is given."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mesokit.report.progress import Reporter
 
 
 def reporter_for(progress: Reporter | bool | None) -> Reporter:
-    """Who tells how a run goes.
+    """The reporter of a run.
 
     Parameters
     ----------

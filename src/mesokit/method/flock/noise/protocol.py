@@ -35,7 +35,7 @@ class Noise(ABC):
 
     @abstractmethod
     def crowd(self, dimension: int, number: int) -> CrowdOrder | None:
-        """Order of birds that all see one another, None where nobody knows."""
+        """Order of birds that all see one another, None if unknown."""
 
 
 @generic

@@ -33,7 +33,7 @@ class NoCollision(CollisionRule):
         return ()
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
-        """How many numbers `coefficients` gives: one, which nobody reads, as records need one."""
+        """Numbers that `coefficients` gives: one, which is not read, as records need one."""
         return 1
 
 

@@ -283,7 +283,7 @@ def table_interval(field, k, x):
     inside = part - floor(part) if field.repeats[k] > 0.5 else min(max(part, 0.0), 1.0)
     place = inside * count
     first = min(floor(place), count - 1.0)
-    if not first >= 0.0:  # nor where there is nobody: lanes of a strip that are not in use hold NaN
+    if not first >= 0.0:  # unused lanes of a strip hold NaN
         first = 0.0
     return np.int64(np.int32(first)) * field.strides[k], place - first
 

@@ -44,8 +44,8 @@ class Forces(Observable):
     Torques are about the place about which the solid turns (2D: about z). With a `length` D there
     are drag and lift coefficients 2F/(rho U^2 D) (3D: 2F/(rho U^2 area)) and the Reynolds number
     U D/nu. U is `speed`, or else the superficial velocity along the flow as it is measured
-    (momentum over the density and the whole box): where a force drives the fluid nobody knows it
-    before.
+    (momentum over the density and the whole box): where a force drives the fluid it is not
+    known before.
     """
 
     quantity: Literal["forces"] = tag("forces")

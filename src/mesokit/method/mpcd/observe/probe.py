@@ -126,7 +126,7 @@ class ProbeAccumulator(BlockAccumulator):
         self.component = observable.seen(case)
         self.blocks, self.series = Blocks((d,)), TimeSeries(d, ROWS)
         self.others: list[TimeSeries] = []  # of runs pooled with it
-        self.last = np.zeros(d)  # the velocity where nobody is there to tell a new one
+        self.last = np.zeros(d)  # the last velocity, kept while no particle is near
 
     def observe(self, fluid: RunningFluid) -> None:
         mass, d = self.case.fluid.mass, self.dimension

@@ -35,9 +35,9 @@ FEWEST = 8  # molecules that tell how far times differ from one to another
 class ResidenceTime(Observable):
     """Times that molecules stay in a region, from when they come in until they are out again.
 
-    Seen at the samples: who is out and in again between two of them has stayed. A walker who has
-    just come in is soon out again, the more often the more often one looks; the mean time until
-    exit, from any moment in the region, does not depend on that.
+    Seen at the samples: a molecule that is out and in again between two of them has stayed. One
+    that has just come in is soon out again, the more often the more frequent samples are; the mean
+    time until exit, from any moment in the region, does not depend on that.
     """
 
     quantity: Literal["residence-time"] = tag("residence-time")
@@ -104,7 +104,7 @@ class ResidenceTime(Observable):
 
 @accumulator_of(ResidenceTime)
 class ResidenceTimeAccumulator(EventAccumulator):
-    """Who is inside, and since when.
+    """Molecules that are inside, and since when.
 
     Memory: `inside`, `since` (the first sample where that was before it), `whole` (whether it was
     not).
@@ -176,7 +176,7 @@ class ResidenceTimeAccumulator(EventAccumulator):
     def exit_time(self) -> tuple[float, float]:
         """Mean time from any sample inside to the first one outside, and its standard error.
 
-        It is the sum over lags of the share that is still inside, of those who were inside a lag
+        It is the sum over lags of the share that is still inside, of those that were inside a lag
         before the end of the run or earlier. So visits count that the ends of the run have cut,
         and a short run does not make it short.
         """

@@ -37,7 +37,7 @@ class Snapshots(Observable):
     every: int = option(default=1, doc="steps between two looks", ge=1, kw_only=True)
 
     def check(self, case: Case) -> None:
-        """Raise CaseError for steps at which nobody looks."""
+        """Raise CaseError for steps at which no sample is taken."""
         for axis in self.axes:
             case.box.index(axis, "axes")
         if self.axes[0] == self.axes[1]:

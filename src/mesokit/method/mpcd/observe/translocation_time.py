@@ -32,8 +32,8 @@ class TranslocationTime(Observable):
     """Times from when the first bead of a molecule passes a plane until the last one is through.
 
     The plane lies across the axis at a position, such as the middle of a contraction, and again in
-    each image of the box (or after each unit cell of an array). Who draws back entirely before the
-    last bead is through has tried in vain, and begins anew.
+    each image of the box (or after each unit cell of an array). A molecule that draws back
+    entirely before its last bead is through has failed, and begins anew.
     """
 
     quantity: Literal["translocation-time"] = tag("translocation-time")
@@ -112,7 +112,7 @@ class TranslocationTimeAccumulator(EventAccumulator):
         place = now["plane"] * length
         entered = now["behind"] & (front >= place)
         when = crossing(now["front"], front, place, times)
-        # where the first bead was beyond the plane before, nobody saw it pass
+        # where the first bead was beyond the plane before, its passage was not seen
         now["since"][entered] = np.where(now["front"] < place, when, np.nan)[entered]
         now["behind"][entered] = False
         drew_back = ~now["behind"] & (front < place)

@@ -198,7 +198,7 @@ def _pieces(array: Any, here: World, alone: bool) -> Iterator[tuple[int, Floats]
 
 
 def _require_room(case: Case, key: str, given: Any, here: World) -> None:
-    """Nobody where no particle may be."""
+    """Refuse positions where no particle may be."""
     array = rows_of(given)
     if array is not None:
         for first, rows in _pieces(array, here, isinstance(given, OfFirst)):
@@ -209,7 +209,7 @@ def _require_room(case: Case, key: str, given: Any, here: World) -> None:
 
 
 def _inside(case: Case, key: str, first: int, positions: Floats) -> None:
-    """Nobody in a wall."""
+    """Refuse positions in a wall."""
     if not case.walls:
         return
     outside = solids_of(case).distance(positions) < 0
@@ -219,7 +219,7 @@ def _inside(case: Case, key: str, first: int, positions: Floats) -> None:
 
 
 def _near(case: Case, key: str, first: int, positions: Floats) -> None:
-    """Nobody so far away that the boxes between cannot be counted."""
+    """Refuse positions so far away that image counts overflow."""
     far = np.abs(positions / case.box.size) >= MOST_IMAGES
     if far.any():
         row = int(np.argmax(far.any(axis=1)))

@@ -66,7 +66,7 @@ def _energy(numbers: Numbers, places: Floats, beads: Floats, pair: Pair) -> Floa
     ]
     trees = [cKDTree(x, boxsize=boxes) for x in inside]
     near = trees[1].sparse_distance_matrix(trees[0], pair.reach, output_type="ndarray")
-    near = near[np.lexsort((near["i"], near["j"]))]  # one order, whoever else is asked for
+    near = near[np.lexsort((near["i"], near["j"]))]  # the same order among any others
     total = np.zeros(len(places))
     np.add.at(total, near["j"], energies((pair.kernel(),), near["v"]))
     return total

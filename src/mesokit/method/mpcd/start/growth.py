@@ -209,7 +209,7 @@ def _any_turn(d: int, random: Draws) -> Floats:
 
 
 class Placed:
-    """The beads that have a place already, in cells, to see who is near.
+    """The beads that have a place already, in cells, to find those nearby.
 
     Beads are of `kinds` (beads,); limits (kinds, kinds): how near those of two kinds may come.
     """

@@ -244,7 +244,7 @@ def _by_mass(case: Case, there: Snapshot) -> NDArray[np.int64]:
 def _whole(case: Case, there: Snapshot) -> Floats:
     """Places (n, d), as if the box had no bounds where the file says in which image they are.
 
-    Raises CaseError for a bond so long that nobody could tell which images it links.
+    Raises CaseError for a bond so long that the images which it links are ambiguous.
     """
     d = case.box.dimension
     closed = {*closed_axes(case.walls), *case.box.open}

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 RESTITUTION = 0.3  # low, so that they soon lie
 SOFT = 1e-3  # overlap of the lowest, in diameters, under a column as high as the box
-IN_CONTACT = 20  # steps: nobody looks at single collisions
+IN_CONTACT = 20  # steps: single collisions do not matter
 SKIN = 0.15  # of the largest diameter
 LOOK = 2000  # steps between two looks whether they are at rest
 QUIET = 1e-5  # kinetic energy of the fastest over its weight times a diameter: at rest

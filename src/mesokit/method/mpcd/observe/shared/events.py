@@ -1,4 +1,4 @@
-"""What observables share that time events of molecules: who is followed, and the result."""
+"""Base of observables that time events of molecules: which are followed, and the result."""
 
 from __future__ import annotations
 

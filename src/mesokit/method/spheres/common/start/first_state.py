@@ -27,7 +27,7 @@ ARRAYS, RUN = ("positions", "velocities", "spins"), "spheres.start.run"
 def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float) -> Started:
     """Places, velocities and spins of all. Raises CaseError for arrays that do not fit.
 
-    Velocities and spins that nobody gives are drawn. Only hard spheres must not overlap.
+    Velocities and spins that are not given are drawn. Only hard spheres must not overlap.
     """
     d, known = case.box.dimension, given_state(case, made, arrays)
     at_rest = not case.walls and not case.spheres.gravity

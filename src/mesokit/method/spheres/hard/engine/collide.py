@@ -104,7 +104,7 @@ def surface_velocity(spheres, i, v, lever):
 def collide_pair(world, rules, spheres, tally, i, j, time):
     """Two spheres touch: their velocities and spins change at once."""
     if spheres.number[j] < spheres.number[i]:
-        i, j = j, i  # whoever noticed it
+        i, j = j, i  # in order of their numbers
     state, body = spheres.state, spheres.body
     r_i, v_i = bring_to(world, spheres, i, time)
     r_j, v_j = bring_to(world, spheres, j, time)

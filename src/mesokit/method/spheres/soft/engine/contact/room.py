@@ -21,11 +21,15 @@ COUNT, VECTOR, MEETING, SPRINGS = (0,) * 3, (0.0,) * 3, (0.0,) * 15, (0.0,) * 6
 # rows of numbers: where the vector, what the two have and springs begin, and the bound of forces
 SEPARATION, MET, KEPT, BOUND, NUMBERS = 0, 3, 18, 24, 25
 FORCE, TORQUE, BACK, COUNTS = 0, 3, 6, 9  # rows of counts: on the one, and the torque on the other
-FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # who, with whom, which contact
+FIRST, SECOND, PLACE = (
+    np.uint64(0),
+    ROW,
+    np.uint64(2) * ROW,
+)  # sphere, partner, number of the contact
 
 
 class Room(NamedTuple):
-    """numbers (25 rows), counts (9 rows), in quanta, and who (3 rows) of a batch of contacts; taken
+    """numbers (25 rows), counts (9 rows), in quanta, and ids (3 rows) of a batch of contacts; taken
     (surfaces, 8): what surfaces have taken, see `machine.taken`."""
 
     numbers: Any
