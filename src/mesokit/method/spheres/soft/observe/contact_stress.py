@@ -110,7 +110,8 @@ class ContactStressAccumulator(BlockAccumulator):
             gradient = np.array([0.0, 0, 0, 0, 1 / weight, -flux / weight**2, 0])
             ratio, error = found.scalar(flux / weight, gradient)
             alike = len(self.case.spheres.kinds) == 1 and self.case.spheres.kinds[0].spread == 0
-            note = "" if alike else "approximate: those on the floor of mean size"
+            off = "lie on the floor without overlap" if alike else "on the floor have the mean size"
+            note = f"approximate: as if spheres {off}"
             note = "; ".join(filter(None, (self.falling(ratio), note)))
             listed.append(Comparison("flux along gravity over weight", ratio, error, 1.0, "", note))
         return listed
