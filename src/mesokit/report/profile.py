@@ -55,7 +55,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     raised = result.extra.get("raised")
     if raised is not None:
         percent = float(result.extra["raised_by"])
-        label = f"2D fluctuations: viscosity up to +{percent:.1f} %"
+        label = f"viscosity up to {percent:.1f} % higher"
         ax.fill_between(x, raised, result.expected, color=COLOURS[2], alpha=0.3, lw=0, label=label)
     if result.fit is not None:
         ax.plot(x, result.fit, "--", color=COLOURS[1], lw=1.3, label="fit", zorder=4)
@@ -73,7 +73,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
             with np.errstate(divide="ignore", invalid="ignore"):
                 lower = (raised - result.expected) / result.error
             residuals.fill_between(x, lower, 0 * x, color=COLOURS[2], alpha=0.3, lw=0)
-        residuals.set_ylabel("deviation\n[std. errors]")
+        residuals.set_ylabel("deviation\n[s.e.]")
         finite = abs(deviation[np.isfinite(deviation)]) if deviation is not None else np.zeros(0)
         reach = max(3.5, 1.15 * finite.max()) if len(finite) else 3.5
         residuals.set_ylim(-reach, reach)
