@@ -77,7 +77,7 @@ def labelled(label: str, unit: str) -> str:
     label = f"${label}$" if len(label) == 1 and label.isalpha() else label
     if shown().of(unit) in label.split():  # time in units of time
         unit = ""
-    return f"{mathematics(label)}  [{symbols(unit)}]" if unit else mathematics(label)
+    return f"{mathematics(label)}  [{symbols(unit)}]".lstrip() if unit else mathematics(label)
 
 
 def lettered(panels: Sequence[Any]) -> None:

@@ -37,6 +37,7 @@ NAMED = 3  # points that a legend names
 SYMBOL = 0.02  # of the height of a figure, a symbol
 ROUGH = "0.4"  # grey of an approximate theory
 MARK: dict[str, Any] = {"ls": "none", "marker": "_", "ms": 14, "mew": 1.3}  # theory at a point
+SPREAD = r"$\pm$ one standard error"
 TICKS = 6  # of values within a decade, each of which has its own
 
 
@@ -118,11 +119,13 @@ def draw(
             ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
         else:
             ax = figure.subplots()
-        notes: list[str] = []
+        several = len(curves) > 1  # then the legend has their names, and the rest stands below
+        dots = "; dots: each run" * any(len(curve.seeds) for curve in curves)
+        notes = [", ".join(filter(None, [note, SPREAD])) + dots] if several else []
         for set_scale, logs in zip((ax.set_xscale, ax.set_yscale), scales, strict=True):
             set_scale("log" if logs else "linear")
         for number, curve in enumerate(curves):
-            _draw(ax, curve, number, note, scales)
+            _draw(ax, curve, number, note, scales, several)
             _say(notes, curve, np.isnan(curve.value), "undetermined at")
             if fit is not None:
                 _draw_fit(ax, curve, number, fit)
@@ -197,21 +200,24 @@ def _spans_a_decade(curves: Sequence[Curve]) -> bool:
     return bool(len(values) and values.min() > 0 and values.max() >= DECADE * values.min())
 
 
-def _draw(ax: Any, curve: Curve, number: int, note: str, scales: tuple[bool, bool]) -> None:
+def _draw(
+    ax: Any, curve: Curve, number: int, note: str, scales: tuple[bool, bool], several: bool
+) -> None:
     colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
-    words = ", ".join(filter(None, [curve.label, note]))
     look = {"mfc": "white", "color": colour, "ms": 5, "capsize": 2, "zorder": 3}
-    label = rf"{words}, $\pm$ one standard error"
+    label = curve.label if several else ", ".join(filter(None, [curve.label, note, SPREAD]))
     ax.errorbar(curve.x, curve.value, curve.error, fmt=marker, label=label, **look)
     if len(curve.seeds):
         dots = {"ms": 2.5, "alpha": 0.55, "color": colour, "zorder": 2.5}
-        label = ", ".join(filter(None, [curve.label, "each run"]))
+        label = "" if several else ", ".join(filter(None, [curve.label, "each run"]))
         ax.plot(*curve.seeds[:, :2].T, "o", label=label, **dots)
     if np.isfinite(curve.expected).any():
-        _draw_theory(ax, curve, LINES[number % len(LINES)], scales)
+        _draw_theory(ax, curve, LINES[number % len(LINES)], scales, several)
 
 
-def _draw_theory(ax: Any, curve: Curve, dash: Any, scales: tuple[bool, bool]) -> None:
+def _draw_theory(
+    ax: Any, curve: Curve, dash: Any, scales: tuple[bool, bool], several: bool
+) -> None:
     """A line where theory holds, and a grey dashed one where it is approximate."""
     known = np.isfinite(curve.expected)
     x, expected, marks, where = curve.x, curve.expected, dict[str, Any](), ""
@@ -221,7 +227,7 @@ def _draw_theory(ax: Any, curve: Curve, dash: Any, scales: tuple[bool, bool]) ->
             x, expected = between
         else:  # no theory is known for what would join the points
             marks, where = MARK, ", at the points"
-    of = f", {curve.label}" * bool(curve.label)
+    of = f", {curve.label}" * bool(curve.label and not several)
     holds, rough = _parts(curve, x, expected, joined=not marks)
     black: dict[str, Any] = {"ls": dash, "color": "black"}
     grey: dict[str, Any] = {"ls": "--", "color": ROUGH}

@@ -18,7 +18,7 @@ from mesokit.study.names import with_symbol
 from mesokit.study.plan import short_names
 from mesokit.study.table import Pooled
 
-SHORT = 45  # letters of what a theory is called in a legend
+SHORT = 45  # letters of the name of a theory, or of numbers on one axis
 
 
 def plot(
@@ -46,7 +46,8 @@ def plot(
     if other is not None:
         units = f"{firsts[0].name} is in {show(unit)} and {other.name} in {show(other.number.unit)}"
         raise CaseError(f"{number}: {units}; expected numbers of one unit")
-    named = " and ".join(with_symbol(row.number.what) for row in firsts), unit
+    names = " and ".join(with_symbol(row.number.what) for row in firsts)
+    named = names if len(names) <= SHORT else "", unit  # the legend has them too
     return draw(drawn, x=called or (key, ""), y=named, note=note, **look)
 
 
