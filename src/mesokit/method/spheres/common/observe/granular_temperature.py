@@ -12,7 +12,7 @@ from mesokit.case.component import component, tag
 from mesokit.method.spheres.common.observe.samples import Samples
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.result import LOWER_BOUND, Array, Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -175,7 +175,9 @@ class GranularTemperatureAccumulator(Samples):
     def note(self) -> str:
         """What the law leaves out."""
         if self.law() == "Haff":
-            return "approximate: molecular chaos, without clusters or pairs that meet again"
+            chaos = "approximate: molecular chaos, without clusters or pairs that meet again"
+            single = np.isnan(self.series.error()).all()
+            return f"{chaos}; {LOWER_BOUND}: as if velocities were independent" if single else chaos
         if self.law() == "conserved" and self.theory.known.contact_time > 0:
             return "approximate: contacts hold a part of the energy"
         return ""
