@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 MADE_ELASTIC = 0.1  # share of the collisions beyond which a contact time changes the physics
 FREEZES = {2: 0.70, 3: 0.494}  # packing fraction above which they order in equilibrium
+DENSE, MELTS = 0.1, 50  # packing fraction from which a lattice lasts; collisions of each until then
 
 
 def summary(case: Case, threads: int | None = None) -> Summary:
@@ -97,6 +99,13 @@ def _warnings(case: Case, rate: float) -> Iterator[str]:
         ordered = isinstance(section.start, LatticeStart)
         slow = "a lattice stays ordered" if ordered else "a random start stays disordered"
         yield f"spheres: a packing fraction of {phi:.3g} freezes; {slow} for long"
+    elif isinstance(section.start, LatticeStart) and case.observe and phi > DENSE:
+        need = math.ceil(MELTS / (rate * section.timestep)) if rate > 0 else 0
+        if case.run.warmup < need:
+            yield (
+                f"run.warmup = {case.run.warmup}: spheres start on a lattice, which lasts some "
+                f"{MELTS} collisions of each, {need} steps"
+            )
     loses = not section.collision.elastic
     if loses and section.collision.contact_time == 0 and (phi > 0.1 or section.gravity):
         yield (

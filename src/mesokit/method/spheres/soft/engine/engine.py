@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from mesokit.method.spheres.common.start.protocol import Started
     from mesokit.seam.engine import Array, Integers, State
 
+UNSTABLE = 1000.0  # times the kT of a bath: no motion that a bath slows is so hot
+
 
 class SoftEngine:
     """Engine of soft spheres (`mesokit.seam.engine.Engine`) on the threads of one machine."""
@@ -70,10 +72,16 @@ class SoftEngine:
             self.system.bodies.velocity[:, :3] *= np.sqrt(wanted / found)
 
     def check(self) -> None:
-        """Raise RunError if numbers are none any more."""
-        bodies = self.system.bodies
+        """Raise RunError if velocities are no numbers, or far beyond those that a bath holds."""
+        bodies, bath = self.system.bodies, self.case.spheres.thermostat
         if not (np.isfinite(bodies.velocity).all() and np.isfinite(bodies.place).all()):
             raise RunError("velocities are no numbers any more; expected a shorter timestep")
+        kT = 2 * self.energies()["translation"] / (self.dimension * self.n)
+        if bath is not None and kT > UNSTABLE * max(bath.held_kT, self.case.spheres.kT):
+            raise RunError(
+                f"kT = {kT:.3g}, where the bath holds {bath.held_kT:.3g}: the motion is unstable; "
+                "expected a shorter spheres.timestep"
+            )
 
     def end_warmup(self) -> None:
         """Forget what walls have taken."""
