@@ -249,7 +249,7 @@ def heat_caveat(case: Case, steps: int) -> str:
     before = law.after(case.run.warmup * case.fluid.timestep) if law else 0.0
     if law and law.steady is not None and rise - before < HOTTER:
         return f"approximate: viscous heating holds kT at about {hot}"
-    return f"{NOT_STEADY}: viscous heating raises kT from {kT:.4g} to about {hot} in the run"
+    return f"{NOT_STEADY}: viscous heating raises kT from {kT:.4g} to {hot} or more in the run"
 
 
 def _heating(case: Case, across: int, steps: int) -> tuple[float, bool] | None:

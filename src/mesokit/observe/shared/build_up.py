@@ -41,8 +41,12 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
         return result
     length = _length(accumulator, result) * observable.every
     if observable.of_built_up_flow:
-        early = _too_early(accumulator, result, case, length, observable.in_any_flow)
-        drift = "" if early else _drift(accumulator, result)
+        build_up, estimated = _build_up(accumulator, case)
+        early = drift = ""
+        if build_up is not None:
+            early = _too_early(build_up, estimated, result, length, observable.in_any_flow)
+        if not (early or _is_short(build_up, length)):
+            drift = _drift(accumulator, result)
         result = _marked(_marked(result, early, observable.in_any_flow), drift)
     steps = case.run.warmup + min(length, case.run.steps)
     heat = method_of(case).heat_caveat(case, steps)
@@ -76,18 +80,27 @@ def _length(accumulator: Accumulator, result: Result) -> int:
     return int(result.samples // series)
 
 
-def _too_early(
-    accumulator: Accumulator, result: Result, case: Case, length: int, but: tuple[str, ...]
-) -> str:
-    """That samples began before the flow had built up, where the method has that time, or it
-    follows from the flow; by all numbers but those with such words in their names."""
+def _build_up(accumulator: Accumulator, case: Case) -> tuple[BuildUp | None, bool]:
+    """How the flow came from rest, and whether that is estimated from the flow itself; None where
+    neither the method nor the flow gives it."""
     method = method_of(case)
-    build_up = method.build_up(case) if method.build_up is not None else None
-    estimated = build_up is None and isinstance(accumulator, OfFlow)
-    if estimated and isinstance(accumulator, OfFlow):
-        build_up = accumulator.build_up()
-    if build_up is None:
-        return ""
+    known = method.build_up(case) if method.build_up is not None else None
+    if known is None and isinstance(accumulator, OfFlow):
+        return accumulator.build_up(), True
+    return known, False
+
+
+def _is_short(build_up: BuildUp | None, length: int) -> bool:
+    """Whether samples began late enough, but span less than a relaxation time of the flow: then
+    fluctuations alone tell the halves apart."""
+    return build_up is not None and build_up.had >= build_up.need and length < build_up.steps
+
+
+def _too_early(
+    build_up: BuildUp, estimated: bool, result: Result, length: int, but: tuple[str, ...]
+) -> str:
+    """That samples began before the flow had built up; by all numbers but those with such words in
+    their names."""
     lacks = build_up.lacks(length) if length else 0.0
     enough = build_up.had >= build_up.need  # then only an error bar that is known tells more
     of_flow = [c for c in result.comparisons if not _has(c, but)]
@@ -96,7 +109,7 @@ def _too_early(
         return ""
     if enough:
         return f"{BUILDS_UP}still lacked {100 * lacks:.2g} % of its speed"
-    need = f"about {two_digits(build_up.need)}" if estimated else f"{build_up.need}"
+    need = f"up to {two_digits(build_up.need)}" if estimated else f"{build_up.need}"
     return f"{BUILDS_UP}needs {need} steps before samples, had {build_up.had}"
 
 

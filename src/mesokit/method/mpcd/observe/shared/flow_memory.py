@@ -28,13 +28,14 @@ class FlowMemory(NamedTuple):
     time: the relaxation time; times: length of the run in such times, both nan where no force
     gives them. least: least standard error of the mean momentum: that of a thermal momentum, of
     variance M kT, whose correlation falls as an exponential. runs: how many are pooled, each of
-    that length.
+    that length. longest: the relaxation time of a momentum two such errors larger.
     """
 
     time: float
     times: float
     least: float
     runs: int = 1
+    longest: float = np.nan
 
     @property
     def note(self) -> str:
@@ -62,7 +63,8 @@ def flow_memory(case: Case, axis: int, momentum: float, blocks: Blocks, every: i
     time = _relaxation(given, had, length)
     times = length / time
     least = float((mass * case.fluid.kT * kept(times) / blocks.series) ** 0.5)
-    return FlowMemory(time, times, least, blocks.series)
+    more = given + 2 * least / abs(mass * acceleration)
+    return FlowMemory(time, times, least, blocks.series, _relaxation(more, had, length))
 
 
 def _relaxation(given: float, had: float, length: float) -> float:
@@ -84,8 +86,9 @@ def _relaxation(given: float, had: float, length: float) -> float:
 
 
 def build_up_of(memory: FlowMemory, case: Case) -> BuildUp | None:
-    """How the flow came from rest, by its own momentum; None where no force tells it."""
+    """How the flow came from rest, by the largest momentum that it may well have; None where no
+    force gives it."""
     if np.isnan(memory.time) or case.fluid.start.run is not None or not case.fluid.force.steady:
         return None
-    steps = memory.time / case.fluid.timestep
+    steps = memory.longest / case.fluid.timestep
     return BuildUp(steps, math.ceil(TIMES * steps), case.run.warmup)
