@@ -54,6 +54,10 @@ class Displacement(Protocol):
         """The diffusion coefficient, nan without a theory, and what to say of it."""
         return math.nan, ""
 
+    def with_start(self, error: float, value: float, runs: int) -> float:
+        """The error of a number that grows as kT, with what the starts of so many runs add."""
+        return error
+
     def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line, inf if never."""
         return 0.0
@@ -203,6 +207,7 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         """The diffusion coefficient beside theory, or why it is not known."""
         scale = 1 / (2 * len(self.axes))
         value, error = slope.value * scale, slope.error * scale
+        error = self.theory.with_start(error, value, self.origins.series)
         expected, note = self.theory.coefficient()
         what = "diffusion coefficient"
         if slope.growth:

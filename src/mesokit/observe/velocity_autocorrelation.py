@@ -45,6 +45,10 @@ class VelocityMemory(Protocol):
         many runs with what their starts add to it; None if it is not told."""
         return math.nan, error
 
+    def with_start(self, error: float, value: float, runs: int) -> float:
+        """The error of a number that grows as kT, with what the starts of so many runs add."""
+        return error
+
     def share(self, every: int) -> str | None:
         """What to say of the share that is left after a lag; None if it is not told."""
         return None
@@ -159,6 +163,7 @@ class VelocityAutocorrelationAccumulator(BlockAccumulator):
             trapezoid[1:] += widths / 2
             trapezoid[:-1] += widths / 2
             value, error = kept.scalar(trapezoid @ kept.value, trapezoid)
+            error = self.theory.with_start(error, value, self.origins.series)
             what = f"diffusion coefficient up to {time[-1]:g} tau"
             found.append(Comparison(what, value, error, diffusion[0], "a^2/tau", diffusion[1]))
         if tail is not None:

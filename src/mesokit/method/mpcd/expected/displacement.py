@@ -128,6 +128,10 @@ class Displacement:
         variance = found.centre_variance if self.of == "centres" else float(found.variance.mean())
         return np.where(late, 2 * len(self.axes) * variance, np.nan)
 
+    def with_start(self, error: float, value: float, runs: int) -> float:
+        """The error of a number that grows as kT, with what the starts of so many runs add."""
+        return setting.with_start(self.case, error, value, runs)
+
     def grows(self) -> bool:
         """In 2D, where momentum spreads and neither walls nor a random solvent take it."""
         case, rule = self.case, self.case.fluid.collision

@@ -65,6 +65,10 @@ class VelocityMemory:
         known = fluid.kT / fluid.mass
         return known, setting.with_start(self.case, error, known, runs)
 
+    def with_start(self, error: float, value: float, runs: int) -> float:
+        """The error of a number that grows as kT, with what the starts of so many runs add."""
+        return setting.with_start(self.case, error, value, runs)
+
     def share(self, every: int) -> str | None:
         """What to say of the share that is left after a lag; None if it is not told."""
         if self.coefficients is None:

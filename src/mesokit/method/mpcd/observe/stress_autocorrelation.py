@@ -158,14 +158,18 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
     def integrals(self, time: Array, modulus: Estimate) -> tuple[list[Comparison], dict[str, Any]]:
         """Viscosity, and moduli G' = w int G sin wt dt, G'' = w int G cos wt dt with errors."""
         end = self.end(time, modulus)
-        weight = np.zeros(len(time))
-        weight[0] = (time[1] - time[0]) / 2 if end == 1 else 0.0
-        weight[: end - 1] += np.diff(time[:end]) / 2
-        weight[1:end] += np.diff(time[:end]) / 2
+        # Trapezoids up to the last lag; where noise sets the end, down to zero at the lag beyond.
+        stop = min(max(end + bool(np.isnan(self.stress_time())), 2), len(time))
+        weight, widths = np.zeros(len(time)), np.diff(time[:stop])
+        weight[: len(widths)] += widths / 2
+        weight[1:end] += widths[: end - 1] / 2
         density = setting.mass_density(self.case)
         value, spread = modulus.scalar(weight @ modulus.value, weight)
+        if not self.remembers() and (gas := setting.transport(self.case)) is not None:
+            kinetic = gas.viscosity_kinetic * density  # which grows as kT
+            spread = setting.with_start(self.case, spread, kinetic, self.runs)
         known = modes_of_stress(self.case)
-        last = time[end - 1] if end > 1 else time[1]
+        last = time[stop - 1]
         expected = np.nan
         if known is not None:  # the integral to the same time
             bonds = sum(known[0] * tau * -math.expm1(-last / tau) for tau in known[1])
