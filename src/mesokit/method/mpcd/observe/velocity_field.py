@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 
 FASTEST = 99.5  # percent of the bins are slower than those of the Mach number
-ABOVE = "of the fastest 0.5 % of the mean flow; above 0.2 the fluid is compressible"
+ABOVE = (
+    "of the fastest 0.5 % of the mean flow, low where noise hides them; above 0.2 the fluid is "
+    "compressible"
+)
 
 
 @component
@@ -28,6 +31,7 @@ class VelocityField(Field):
 
     quantity: Literal["velocity-field"] = tag("velocity-field")
     asks_transport: ClassVar[bool] = True
+    of_built_up_flow: ClassVar[bool] = True
 
 
 @accumulator_of(VelocityField)
