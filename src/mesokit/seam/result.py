@@ -24,6 +24,7 @@ FIGURES = "mesokit.report"  # by their names: results know nothing of how they a
 TABLES = "mesokit.io.tables"  # and written
 EXACT = 2.0**-50  # of a value: an error below is that of rounding
 SUSPICIOUS = 4.0  # standard errors
+COARSE = 0.2  # of what is expected: a larger error
 ROUNDING = 1e-12  # relative: two numbers that differ by less are the same
 NOT_STEADY = "not steady"  # how the note of a comparison begins, where that is so
 LOWER_BOUND = "error bar is a lower bound"  # what it says somewhere, where that is so
@@ -126,10 +127,18 @@ class Comparison:
     def percent(self) -> float:
         """(measured - expected) in percent of the size of what is expected, nan if that is 0.
 
+        Beside an approximate theory it is nan too where it is noise: within two errors that are
+        more than a fifth of what is expected.
+
         >>> round(Comparison("stress", -1.1, 0.1, -1.0).percent, 6)
         -10.0
+        >>> Comparison("a_2", -0.001, 0.014, -0.027, note="approximate: one term").percent
+        nan
         """
         difference = self.measured - self.expected
+        coarse = self.error > COARSE * abs(self.expected)
+        if self.approximate and coarse and abs(difference) < 2 * self.error:
+            return math.nan
         if abs(difference) < ROUNDING * abs(self.expected):
             difference = 0.0
         if not self.steady:
@@ -392,7 +401,7 @@ class Result(Shown):
         return "\n  ".join(lines + [str(c) for c in self.comparisons])
 
 
-AXIS_WORDS = {"of": "group"}  # where the name of an axis is no noun
+AXIS_WORDS = {"of": "group", "by": "part", "measured by": "route"}  # where the name is no noun
 
 
 def _same(a: Any, b: Any) -> bool:
