@@ -24,7 +24,7 @@ from mesokit.case.box import Box
 from mesokit.case.shear import protocol as histories
 from mesokit.geometry import cut
 from mesokit.geometry import protocol as solids
-from mesokit.geometry.solids import contact, filled  # noqa: F401  what solids in tables answer
+from mesokit.geometry.solids import contact, virtual_particles  # noqa: F401  what solids in tables answer
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
 from mesokit.geometry.solids.none import Nothing

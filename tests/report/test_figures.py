@@ -239,7 +239,7 @@ def test_captions_keep_cautions_and_say_them_once():
         ],
         6.4,
     ).splitlines()
-    assert lines[0].endswith("(theory 0.9, +1.0 s.e.; error bar is a lower bound: short)")
+    assert lines[0].endswith("(theory 0.9, at most +1.0 s.e.; error bar is a lower bound: short)")
     assert lines[1].endswith("(theory 10, -10 %; approximate)") and "tau$" in lines[1]
     assert lines[3].endswith("+0.0 s.e.)") and lines[4] == "approximate: Rouse" + 20 * "!"
 
