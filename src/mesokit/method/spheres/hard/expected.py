@@ -93,7 +93,9 @@ class Displacement(mean_square_displacement.Displacement):
 
     def coefficient(self) -> tuple[float, str]:
         """D of Enskog, which is not exact."""
-        return self.diffusion, "approximate: Enskog: neglects velocity correlations"
+        if not math.isfinite(self.diffusion):
+            return self.diffusion, ""
+        return self.diffusion, NOTE
 
     def diffusive_from(self) -> float:
         """When the velocity is forgotten."""

@@ -36,13 +36,15 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         seconds = max(seconds, time * cost.hard_seconds(flight))
     memory = case.particles * section.bytes_each + 200_000_000
     stored = stored_bytes(case.trajectory, case.groups, box.dimension, case.run.steps)
+    hard = section.collision.hard
+    enskog = "of a sphere at the start, Enskog" + ", without the potential" * (not hard)
     rows: list[Row] = [
         ("spheres", f"{case.particles:,}".replace(",", " "), ""),
         ("packing fraction", number(phi), ""),
-        ("collision rate", number(rate, "1/time"), "of a sphere at the start, Enskog"),
+        ("collision rate", number(rate, "1/time"), enskog),
         ("collisions in a step", number(0.5 * rate * case.particles * section.timestep), "of all"),
     ]
-    if section.kT > 0 and len(section.kinds) == 1:
+    if section.kT > 0 and len(section.kinds) == 1 and hard:
         z = theory.compressibility(phi, box.dimension)
         rows.append(("pressure", number(z, "n kT"), "in equilibrium without walls"))
     numbers: dict[str, Any] = {

@@ -77,7 +77,7 @@ class SphereCollision(ABC):
 
     @property
     def reach(self) -> float:
-        """Distance in diameters at which two spheres first feel one another."""
+        """Range of the potential, in diameters."""
         return 1.0
 
     @property
