@@ -189,15 +189,17 @@ def _couette(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
     height = seen.edges[-1]
     slope, error = line.scalar(line.value[1], np.array([0.0, 1.0]))
     difference, slips = upper - lower, setting.slipping(seen.case)
+    short = seen.short_run(seen.expected_viscosity())
+    note = noted(slope, slips, short)
     return basis @ line.value, [
-        Comparison("shear rate", slope, error, difference / height, "1/tau", slips),
+        Comparison("shear rate", slope, error, difference / height, "1/tau", note),
         Comparison(
             "slip at the walls",
             50 * (1 - slope * height / difference),
             50 * error * height / abs(difference),
             0.0,
             "% of the velocity difference",
-            slips or "mean of both plates",
+            note or "mean of both plates",
         ),
     ]
 
