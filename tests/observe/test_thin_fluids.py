@@ -7,6 +7,7 @@ import pytest
 from mesokit import (
     Box,
     Case,
+    FlowRate,
     Fluid,
     MaxwellBoltzmann,
     Plates,
@@ -19,6 +20,8 @@ from mesokit import (
     VelocityProfile,
     WallStress,
 )
+from mesokit.method.mpcd.expected import setting
+from tests.helpers.fake_fluid import FakeFluid
 
 PROFILE = VelocityProfile(axis="y", component="x", every=5)
 
@@ -73,3 +76,17 @@ def test_check_says_why():
     assert any("no theory of so thin a fluid" in one for one in summary_of(thin).warnings)
     thick = dataclasses.replace(thin, fluid=dataclasses.replace(thin.fluid, density=1.5))
     assert not any("no theory of so thin" in one for one in summary_of(thick).warnings)
+
+
+@pytest.mark.parametrize(
+    ("size", "timestep", "slips"), [(12, 1.0, True), (48, 1.0, False), (12, 0.2, False)]
+)
+def test_long_flights_slip_along_plates(size, timestep, slips):
+    """Where a flight is a part of the channel the flow rate is more than that of no slip."""
+    given = case(8.0, [FlowRate()], size, timestep=timestep, **DRIVEN)
+    accumulator, fluid = FlowRate().accumulator(given), FakeFluid(given)
+    for _ in range(40):
+        accumulator.observe(fluid)
+    rate = next(c for c in accumulator.result().comparisons if c.what.startswith("flow rate"))
+    assert rate.approximate == slips == setting.slipping(given).startswith("approximate: slip")
+    assert rate.expected > 0

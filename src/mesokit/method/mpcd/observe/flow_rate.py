@@ -121,7 +121,8 @@ class FlowRateAccumulator(BlockAccumulator):
         size, letter = np.array(self.case.box.size, float), AXES[self.axis]
         area = float(np.prod(size) / size[self.axis])
         short = self.flow_memory().note
-        note = "; ".join(filter(None, (setting.caveat(self.case) or name, short)))
+        off = setting.caveat(self.case) or (setting.rarefied(self.case) if name else "")
+        note = "; ".join(filter(None, (off or name, short)))
         found = [
             Comparison(f"mean velocity along {letter}", speed, error, known, "a/tau", note),
             Comparison(
