@@ -23,6 +23,7 @@ from mesokit import (
     Study,
     Surface,
     Uniform,
+    VelocityField,
     VelocityProfile,
     WallStress,
 )
@@ -126,6 +127,30 @@ def test_a_flow_that_still_changes_is_not_compared():
     assert first.note.startswith("not steady: mean velocity along x 0.12")
     assert "in the first half, 0.17" in first.note and math.isnan(first.deviation)
     assert all(one.steady for one in steady) and math.isfinite(steady[0].deviation)
+
+
+@pytest.mark.parametrize(("height", "told_apart"), [(30, False), (16, True)])
+def test_halves_of_less_than_a_relaxation_time_are_not_told_apart(height, told_apart):
+    """500 steps after 3000, where the flow builds up in 715 or 200: fluctuations last as long."""
+    case = dataclasses.replace(flow(500, 3000, height=height), observe=[FlowRate(every=5)])
+    accumulator, fluid = case.observe[0].accumulator(case), FakeFluid(case)
+    noise = np.random.default_rng(5).normal(0, 0.004, 100)
+    for n in range(100):
+        fluid.step = 3000 + 5 * (n + 1)
+        speed = 0.1 + 0.3 * n / 100 + noise[n]
+        fluid.totals = lambda v=speed: (fluid.n, fluid.m.sum() * np.array([v, 0.0]), 0.0)
+        accumulator.observe(fluid)
+    (rate, *_) = result_of(accumulator, case).comparisons
+    assert ("first half" in rate.note) == told_apart != rate.steady
+    assert rate.lower_bound != told_apart
+
+
+def test_a_mach_number_before_the_flow_has_built_up_is_marked():
+    case = dataclasses.replace(flow(100, 5, height=30), observe=[VelocityField(every=20)])
+    simulation = Simulation(case)
+    simulation.run()
+    (mach,) = simulation["velocity-field"].comparisons
+    assert mach.what == "largest Mach number" and mach.note.startswith("not steady: the flow needs")
 
 
 def test_json_of_info_is_json(early):

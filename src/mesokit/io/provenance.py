@@ -31,7 +31,7 @@ SECONDS = 5  # for git to answer
 def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
     """Where the numbers of a run come from, as it starts: case, versions, host, time.
 
-    `sources` tells the state of mesokit, `starts_from` that of files and runs it starts from.
+    `sources` is the state of mesokit, `starts_from` that of the files and runs it starts from.
     `units` says what a reduced unit is in SI, None if the case does not; `parts` which classes come
     from outside mesokit, and from where.
     `threads` are those of each rank. `ended` and `failed` (why) are None, `timings` (of rank 0) and

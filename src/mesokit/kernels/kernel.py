@@ -31,7 +31,7 @@ PATIENCE = 300.0  # seconds: a process that was stopped holds no other up for ev
 def taken(folder: str, name: str) -> BaseFileLock | None:
     """The lock of what has this name, once no other process has it.
 
-    None where the file system knows no locks, and after too long a wait: then all compile. The
+    None where the file system has no locks, and after too long a wait: then all compile. The
     system takes the lock from a process that ends.
     """
     place = Path(folder) / "locks" / hashlib.sha256(name.encode()).hexdigest()[:32]

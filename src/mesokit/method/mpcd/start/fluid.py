@@ -2,8 +2,8 @@
 
 Solutes that act on the fluid by a potential have it about them as in equilibrium. An ideal gas has
 the density exp(-U/kT) about beads at rest: so a particle that was put near a bead stays with that
-chance, and is put elsewhere otherwise. Of a well it knows nothing: there the fluid starts as dense
-as far away.
+chance, and is put elsewhere otherwise. The attraction of a well is left out: there the fluid starts
+as dense as far away.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What theory expects of soft spheres: equilibrium and cooling; of their ways it knows nothing."""
+"""What theory expects of soft spheres: equilibrium and cooling; it has none of displacements."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def equilibrium(case: Case) -> Equilibrium | None:
 
 
 class Displacement(mean_square_displacement.Displacement):
-    """What the observable asks; theory knows of no such fluid."""
+    """Memory of velocities without a theory, as there is none of such a fluid."""
 
     answers = "mean-square-displacement"
 
