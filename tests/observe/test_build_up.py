@@ -28,7 +28,7 @@ from mesokit import (
     WallStress,
 )
 from mesokit.io.tables import record
-from mesokit.method.mpcd.observe.shared.flow_memory import flow_memory
+from mesokit.method.mpcd.observe.shared.flow_memory import build_up_of, flow_memory
 from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.caveats import with_those_of
 from mesokit.report.caption import compared
@@ -279,6 +279,8 @@ def test_the_time_of_a_flow_from_rest_is_that_of_its_exponential(time, had, leng
     found = flow_memory(case, 0, momentum, blocks, every=10)
     assert found.time == pytest.approx(time, rel=5e-3)
     assert found.times == pytest.approx(length / time, rel=5e-3)
+    low = flow_memory(case, 0, momentum - found.least, blocks, every=10)  # by chance
+    assert low.time < time < build_up_of(low, case).steps * 0.1
 
 
 def test_a_flow_that_builds_up_leaves_the_pressure_on_plates():

@@ -49,6 +49,7 @@ def test_the_temperature_of_one_gas_that_cools_has_the_error_of_its_velocities()
     for one in found:
         assert one.error == pytest.approx(one.measured * math.sqrt(2 / (2 * 299)))
         assert "no error bar" not in one.note and "(" in str(one).split(",")[0]
+        assert one.lower_bound  # velocities are not independent once the gas has clusters
 
 
 def test_the_temperature_of_several_gases_has_the_error_of_their_scatter():
@@ -61,6 +62,7 @@ def test_the_temperature_of_several_gases_has_the_error_of_their_scatter():
     assert result.comparisons[0].measured == pytest.approx(ends.mean())
     assert result.comparisons[0].error == pytest.approx(ends.std(ddof=1) / math.sqrt(runs))
     assert result.error[-1, 0] == pytest.approx(result.comparisons[0].error)
+    assert not result.comparisons[0].lower_bound
 
 
 @pytest.mark.parametrize(

@@ -164,6 +164,12 @@ def test_couette(make_case):
     slip = slipping["slip at the walls"]
     assert abs(slip.measured - 10) < 4 * slip.error
     assert slip.measured > 5 * slip.error
+    relaxation = 144 / (np.pi**2 * setting.transport(case).viscosity)  # a sample is a time unit
+    for times, short in ((20, True), (130, False)):
+        seen = watched(case, VelocityProfile(), lambda y: (y - 6) / 12, int(times * relaxation))
+        numbers = by_name(seen)
+        assert numbers["shear rate"].lower_bound is short
+        assert numbers["slip at the walls"].lower_bound is short
 
 
 def test_lees_edwards_line_and_staircase(make_case):
