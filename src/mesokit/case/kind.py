@@ -3,18 +3,13 @@
 The kind is the text of a case without its numbers, but for zeros, which may switch something off.
 """
 
-from __future__ import annotations
-
 import hashlib
 import re
-from typing import TYPE_CHECKING
 
+from mesokit.case.case import Case
 from mesokit.kernels.kept import kept, versions
 from mesokit.kernels.kernel import needs_of_all, processor
 from mesokit.kernels.store import Entry
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]?\d+)?")
 FILE = re.compile(r'file = "[^"]*"')

@@ -1,20 +1,16 @@
 """What any method warns of: runs that leave nothing, or more than the machine can hold."""
 
-from __future__ import annotations
-
 import dataclasses
 import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesokit.case.amounts import size_text
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:

@@ -1,19 +1,15 @@
 """The section `[[wall]]` of a case: what every method checks of it, and what each takes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from mesokit.case.case import Case
 from mesokit.case.component import name_of, one_of, show, tag_of
 from mesokit.geometry import shape_protocol
 from mesokit.geometry.shape.intersection import Intersection
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import Solids, labels, solids_of
 from mesokit.geometry.surface import Surface, SurfaceContact
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 VIBRATION = ("amplitude", "frequency")
 CONTACT = ("temperature", "tangential", "restitution", "friction", *VIBRATION)

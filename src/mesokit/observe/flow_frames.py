@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe.shared.field import Array, Field
@@ -18,9 +19,6 @@ from mesokit.seam.estimate import of_ratio
 from mesokit.seam.observable import State, accumulator_of
 from mesokit.seam.result import Result
 from mesokit.statistics import spread_ids
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 MOST_NUMBERS = 2**27  # of all frames together: half a gigabyte
 

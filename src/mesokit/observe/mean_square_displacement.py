@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, Protocol
+from typing import ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either
 from mesokit.observe.shared.fitted import fitted_number
@@ -19,9 +20,6 @@ from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import spread_ids
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Integers = NDArray[np.int64]
 FEWEST = 3  # points of a fit

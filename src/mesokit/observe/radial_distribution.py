@@ -1,15 +1,14 @@
 """Radial distribution function g(r): how many others there are at a distance."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import field_validator
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
@@ -22,9 +21,6 @@ from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Ids = NDArray[np.int64]
 FARTHEST = 5.0  # unless a reach is given

@@ -1,13 +1,12 @@
 """Velocity autocorrelation of particles."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
+from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, tag
 from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid
@@ -16,9 +15,6 @@ from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import spread_ids
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Integers = NDArray[np.int64]
 

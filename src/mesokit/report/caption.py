@@ -1,7 +1,5 @@
 """Captions: what was compared, in words and formulas, below a figure."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections import Counter

@@ -1,7 +1,5 @@
 """Functions of a time lag: displacement, memory of a velocity, decay of modes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

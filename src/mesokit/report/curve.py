@@ -1,7 +1,5 @@
 """Any result: its values over the first coordinate, a curve for each choice of the others."""
 
-from __future__ import annotations
-
 import itertools
 from typing import Any
 

@@ -1,12 +1,11 @@
 """Maps of a whole run, drawn as pictures of the flow are; with solids where the case is known."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.observe.flow_frames import average
 from mesokit.report.caption import symbols
 from mesokit.report.flow import density, quiver, speed
@@ -20,9 +19,6 @@ from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import axes_of
 from mesokit.report.style import labelled
 from mesokit.seam.result import Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 FEW = 10  # samples: of fewer a mean says how many
 NO_FLUID = "0.85"  # grey of bins without fluid, where the solids are unknown

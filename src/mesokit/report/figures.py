@@ -3,16 +3,15 @@
 Matplotlib is imported when a figure is made, and drawn without a display.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.report import (
     correlation,
     curve,
@@ -45,9 +44,6 @@ from mesokit.report.rheology import stress_in_time
 from mesokit.report.style import STYLE, WIDTH, fonts, height_of
 from mesokit.seam.in_units import showing
 from mesokit.seam.result import Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 # What a result says that it is drawn as. Maps know their own figure.
 DRAW: dict[str, Callable[[Result, Any, Any], None]] = {

@@ -1,7 +1,5 @@
 """Forces on solids: their components side by side, next to what a balance expects, and in time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

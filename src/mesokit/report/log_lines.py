@@ -1,7 +1,5 @@
 """The log of a run on the screen: aligned lines under a header."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from mesokit.seam.result import with_error

@@ -1,7 +1,5 @@
 """Figures that a notebook shows. Import it where a figure is made: it loads Matplotlib."""
 
-from __future__ import annotations
-
 import io
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Velocity at a place: in time above, its power spectrum below."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Profiles: data, theory and fit above, deviation from theory in standard errors below."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

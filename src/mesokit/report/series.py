@@ -1,7 +1,5 @@
 """Time series of what should be conserved."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any

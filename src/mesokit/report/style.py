@@ -1,7 +1,5 @@
 """How figures look: readable in print, in grey, and on a projector."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 from typing import Any

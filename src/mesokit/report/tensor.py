@@ -1,7 +1,5 @@
 """Few numbers with names: stresses and forces on plates, next to what is expected."""
 
-from __future__ import annotations
-
 import itertools
 from typing import Any
 

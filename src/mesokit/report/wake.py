@@ -1,7 +1,5 @@
 """The velocity behind a body: where it passes zero."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What an observable is, and how it keeps its numbers."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod, update_abstractmethods
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
@@ -9,13 +7,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, option
 from mesokit.case.registry import family
 from mesokit.seam.result import Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.floating[Any]]
 State = dict[str, NDArray[Any]]

@@ -1,23 +1,19 @@
 """What an observable hands back: numbers with error bars, the theory for them, and comparisons."""
 
-from __future__ import annotations
-
 import importlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.describe.shown import Shown
 from mesokit.seam.named import find, key_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.floating[Any]]
 FIGURES = "mesokit.report"  # by their names: results know nothing of how they are drawn

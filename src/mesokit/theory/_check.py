@@ -1,7 +1,5 @@
 """Refusal of bad input, with the argument, its value and what was expected."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

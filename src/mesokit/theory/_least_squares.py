@@ -1,7 +1,5 @@
 """Linear least squares with error bars, for the fits of this package."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

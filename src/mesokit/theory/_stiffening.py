@@ -1,7 +1,5 @@
 """The cubic equation of springs that are made stiffer in shear."""
 
-from __future__ import annotations
-
 
 def stiffening(drive: float) -> float:
     """The root x >= 1 of x^2 (x - 1) = drive, for a drive of 0 or more."""

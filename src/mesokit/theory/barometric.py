@@ -1,7 +1,5 @@
 """Where an ideal gas is in gravity."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -1,7 +1,5 @@
 """Diffusion of a heavy bead that collides with a fluid that forgets, among other beads."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Correlation in time of the bonds of Rouse molecules, at rest and in steady shear."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

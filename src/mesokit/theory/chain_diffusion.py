@@ -1,7 +1,5 @@
 """Diffusion of the centre of mass of chains, with and without hydrodynamic interaction."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

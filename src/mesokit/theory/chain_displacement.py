@@ -1,7 +1,5 @@
 """Mean square displacement of the beads of a molecule that drag nothing along."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -1,7 +1,5 @@
 """How the sizes of ideal molecules are distributed."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

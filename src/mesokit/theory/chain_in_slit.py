@@ -1,7 +1,5 @@
 """Where the beads of ideal molecules are between two hard walls."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """How size, diffusion and relaxation of long chains depend on their number of beads."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from mesokit.theory._check import one_of

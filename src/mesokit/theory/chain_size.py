@@ -1,7 +1,5 @@
 """Size of ideal chains in equilibrium: end-to-end distance and radius of gyration."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from mesokit.theory._check import positive, whole

@@ -5,8 +5,6 @@ diameter (side, for a square), H the height of the channel, L_r the length of th
 fluid flows back, from the rear of the cylinder. Drag coefficients are 2F/(rho U^2 D).
 """
 
-from __future__ import annotations
-
 import itertools
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Below which restitution spheres in a line collapse."""
 
-from __future__ import annotations
-
 import math
 
 

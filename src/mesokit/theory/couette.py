@@ -1,7 +1,5 @@
 """Flow between two plates that move along themselves."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -1,7 +1,5 @@
 """Slow flow through a simple cubic array of spheres."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """When two species demix under the rule that turns the flux of colour up its gradient."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.theory._check import dimension_two_or_three, positive

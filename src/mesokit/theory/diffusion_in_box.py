@@ -1,7 +1,5 @@
 """Diffusion in a periodic box, where a particle feels its own images."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.theory._check import positive

@@ -1,7 +1,5 @@
 """Viscosity of dumbbells of any spring in steady shear flow."""
 
-from __future__ import annotations
-
 from mesokit.theory._check import dimension_two_or_three, not_negative, positive
 from mesokit.theory._stiffening import stiffening
 

@@ -1,7 +1,5 @@
 """How many collisions a contact time makes elastic."""
 
-from __future__ import annotations
-
 import math
 
 CORRELATED = 1.87  # measured in 2D at a packing fraction of 0.25; 2 in molecular chaos

@@ -1,7 +1,5 @@
 """Diffusion of hard disks and spheres (Enskog)."""
 
-from __future__ import annotations
-
 import math
 
 ALL_ORDERS = 1.01896  # over the first, of spheres (Pekeris 1955)

@@ -1,7 +1,5 @@
 """How often hard disks and spheres collide (Enskog)."""
 
-from __future__ import annotations
-
 import math
 
 

@@ -1,7 +1,5 @@
 """Viscosity raised by the fluid's own fluctuations, which depends on the size of the box."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.theory._check import dimension_two_or_three, positive

@@ -1,7 +1,5 @@
 """Moduli of the stress that particles carry in their flights."""
 
-from __future__ import annotations
-
 import cmath
 
 from mesokit.theory._check import positive

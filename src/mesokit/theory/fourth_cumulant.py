@@ -1,7 +1,5 @@
 """How far the velocities of a granular gas are from Maxwell's."""
 
-from __future__ import annotations
-
 
 def fourth_cumulant(restitution: float, dimension: int, heated: bool = False) -> float:
     """a_2 = d/(d + 2) <v^4>/<v^2>^2 - 1 of smooth inelastic spheres, 0 of Maxwell's.

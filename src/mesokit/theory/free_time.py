@@ -1,7 +1,5 @@
 """How long hard spheres fly between two collisions."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

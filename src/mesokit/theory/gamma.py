@@ -1,7 +1,5 @@
 """Kinetic energy of a cell about its centre of mass, in thermal equilibrium."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

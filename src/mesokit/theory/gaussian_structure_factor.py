@@ -1,7 +1,5 @@
 """Structure factor of one ideal molecule: Debye's sum over its beads."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

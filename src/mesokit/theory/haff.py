@@ -1,7 +1,5 @@
 """How a gas of inelastic hard spheres cools (Haff 1983)."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

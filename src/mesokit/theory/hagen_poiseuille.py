@@ -1,7 +1,5 @@
 """Flow along a round pipe, driven by a uniform acceleration."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

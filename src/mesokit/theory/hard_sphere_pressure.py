@@ -1,7 +1,5 @@
 """Equation of state of equal hard disks and spheres."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Harmonic bonds in equilibrium, in both conventions: U = K r^2 and U = k/2 (r - r0)^2."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Where harmonic traps hold the beads of an ideal molecule, and how they spread about that."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How much of its heading a lone bird keeps in a step."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.theory._check import dimension_two_or_three

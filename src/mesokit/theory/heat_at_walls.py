@@ -1,7 +1,5 @@
 """Heat that a fluid without a thermostat conducts, and hands to walls of virtual particles."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Temperature that a thermostat of the collision cells holds, where it is not quite kT."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from mesokit.theory._check import dimension_two_or_three, one_of, positive

@@ -1,7 +1,5 @@
 """Two elastic spheres that collide (Hertz 1882)."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Rouse molecules and dumbbells in steady shear flow."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numpy.typing import ArrayLike

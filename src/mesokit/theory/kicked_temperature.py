@@ -1,7 +1,5 @@
 """The temperature of inelastic hard spheres that are kicked at random."""
 
-from __future__ import annotations
-
 
 def kicked_temperature(power: float, restitution: float, unit_rate: float) -> float:
     """Thermal energy at which kicks give as much as collisions take, in molecular chaos.

@@ -1,7 +1,5 @@
 """Flow driven by a force that varies as a sine across a periodic box."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

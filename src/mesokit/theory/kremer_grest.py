@@ -1,7 +1,5 @@
 """Bond length of the bead-spring model of Kremer and Grest."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import NamedTuple

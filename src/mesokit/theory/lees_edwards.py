@@ -1,7 +1,5 @@
 """Uniform shear in a periodic box."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

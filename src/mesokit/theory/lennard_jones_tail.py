@@ -1,7 +1,5 @@
 """What the cut-off of a Lennard-Jones fluid leaves out."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Velocities in thermal equilibrium."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Mean square displacement of a fluid particle."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

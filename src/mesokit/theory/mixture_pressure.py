@@ -1,7 +1,5 @@
 """Equation of state of mixtures of hard disks and spheres."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from mesokit.theory.hard_sphere_pressure import compressibility

@@ -1,7 +1,5 @@
 """Normal modes of beads that are linked by equal springs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Where each transport coefficient comes from and how far it holds."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 GOMPPER = "Gompper et al. 2009, Table 1"

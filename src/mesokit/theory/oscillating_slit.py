@@ -1,7 +1,5 @@
 """Flow between two plates at rest, driven by a uniform acceleration that oscillates."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How long a walker takes: to a place that it drifts to, and out of a slab that it wanders in."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

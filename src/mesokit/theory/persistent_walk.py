@@ -1,7 +1,5 @@
 """Walks whose steps remember the direction of the last: a bird alone."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -1,7 +1,5 @@
 """A ball that bounces on a floor under gravity, with and without a contact time."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Flow between two plates at rest, driven by a uniform acceleration."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

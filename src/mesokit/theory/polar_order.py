@@ -1,7 +1,5 @@
 """Polar order of birds at random, and of birds that all see one another."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

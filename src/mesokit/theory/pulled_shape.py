@@ -1,7 +1,5 @@
 """Where the beads of harmonic molecules are in the mean when forces pull at them."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

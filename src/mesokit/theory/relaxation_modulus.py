@@ -1,7 +1,5 @@
 """Linear viscoelasticity of Rouse molecules in a viscous fluid: a sum of Maxwell modes."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

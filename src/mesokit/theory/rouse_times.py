@@ -1,7 +1,5 @@
 """Relaxation times of beads linked by springs, without hydrodynamic interaction."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

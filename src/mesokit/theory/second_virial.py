@@ -1,7 +1,5 @@
 """Second virial coefficient of a potential of pairs."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Self-diffusion of a fluid particle that meets again what it has set going."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

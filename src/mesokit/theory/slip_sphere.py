@@ -1,7 +1,5 @@
 """Friction and diffusion of a smooth sphere, which a central force keeps the fluid away from."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.theory._check import dimension_two_or_three, positive

@@ -1,7 +1,5 @@
 """Disks and spheres on an inclined plane, by Coulomb's law of friction."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

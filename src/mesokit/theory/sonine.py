@@ -1,7 +1,5 @@
 """Velocities near those of Maxwell: the first correction, by a Sonine polynomial."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -1,7 +1,5 @@
 """Two spheres that collide by a linear spring and a dashpot."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Slow flow across a square array of cylinders."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -15,8 +15,6 @@ over random positions.
 `python -m mesokit.theory.srd_angular_table` prints them again (four minutes).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

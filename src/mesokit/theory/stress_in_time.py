@@ -1,7 +1,5 @@
 """Stress of Rouse molecules in a shear that changes in time: start-up, cessation, steps, ramps."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Flow between two round surfaces with the same axis that turn."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Transport coefficients of MPCD fluids: viscosity, diffusion, sound, heat."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

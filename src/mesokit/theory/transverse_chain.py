@@ -1,7 +1,5 @@
 """Transverse velocity modes of a fluid made of Rouse chains of any length."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

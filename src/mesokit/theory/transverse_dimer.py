@@ -1,7 +1,5 @@
 """Transverse velocity modes of a fluid made of dimers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

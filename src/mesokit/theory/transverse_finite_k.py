@@ -1,7 +1,5 @@
 """Transverse velocity modes of bonded fluids at waves as short as the molecules are long."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Decay of transverse velocity fluctuations (shear waves)."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bond length of linear trimers in shear flow, with hydrodynamic interaction."""
 
-from __future__ import annotations
-
 import math
 
 from mesokit.theory._check import not_negative, positive

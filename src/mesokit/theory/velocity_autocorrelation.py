@@ -1,7 +1,5 @@
 """Velocity autocorrelation of a fluid particle, one component: C(0) = kT/m."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

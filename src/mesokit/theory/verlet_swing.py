@@ -1,7 +1,5 @@
 """How far a spring swings that is followed in sub-steps."""
 
-from __future__ import annotations
-
 from mesokit.theory._check import positive
 
 

@@ -1,7 +1,5 @@
 """Slip at plates whose virtual particles go on with the flow, in thin fluids."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from mesokit.theory._check import one_of

@@ -1,7 +1,5 @@
 """Liquid water at 0.1 MPa between 0 and 100 degrees Celsius, in SI units."""
 
-from __future__ import annotations
-
 COLDEST, HOTTEST = 273.15, 373.15  # K
 _DENSITY = (999.83952, 16.945176, -7.9870401e-3, -46.170461e-6, 105.56302e-9, -280.54253e-12)
 _VISCOSITY = ((280.68, -1.9), (511.45, -7.7), (61.131, -19.6), (0.45903, -40.0))

@@ -1,7 +1,5 @@
 """Short chains in steady shear flow, with hydrodynamic interaction."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Relaxation times of linear chains with hydrodynamic interaction."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

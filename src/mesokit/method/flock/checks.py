@@ -1,20 +1,15 @@
 """What is fine alone and has no physics together."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from mesokit.case.amounts import count_text
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.warnings import require_memory
 from mesokit.errors import CaseError
 from mesokit.geometry.walls import Walls, room
 from mesokit.method.flock.section import BYTES, DENSITY
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 MOST_BIRDS = 2**31 - 1  # their numbers are 32-bit
 MOST_BOXES = 2.0**30  # crossed in a run: counts are 32-bit

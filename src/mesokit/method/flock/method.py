@@ -1,13 +1,11 @@
 """Flocks, as the rest of the package knows them."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.case.trajectory import Group, Kind
 from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.flock.checks import check, room_in_memory
@@ -19,9 +17,6 @@ from mesokit.method.flock.start import FirstState, first_state
 from mesokit.method.flock.summary import summary
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.seam.method import Columns, Enclosure, InitialState, Method
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 STARTS = ("positions", "velocities", "run", "file")
 

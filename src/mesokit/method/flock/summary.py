@@ -1,13 +1,11 @@
 """What follows from a case of a flock: derived numbers, cost, and warnings."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from mesokit import theory
 from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
@@ -15,9 +13,6 @@ from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.flock.section import BYTES
 from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import Row, Summary
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 # Seconds of a thread for a bird and for each bird that it looks at, where the project measures
 SECONDS, EACH = {2: 40e-9, 3: 60e-9}, {2: 0.7e-9, 3: 1.0e-9}

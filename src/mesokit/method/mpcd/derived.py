@@ -1,14 +1,12 @@
 """What follows from a case before it runs: numbers, cost, and warnings."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.trajectory import stored_bytes
 from mesokit.geometry.shape.plates import Plates
@@ -20,9 +18,6 @@ from mesokit.method.mpcd.warnings import cautions
 from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import BuildUp
 from mesokit.seam.result import NOT_STEADY
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 HOTTER = 0.05  # relative rise of kT from which on theory at kT is of another fluid
 WITHOUT = ", as without obstacles"  # said of a flow

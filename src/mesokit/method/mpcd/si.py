@@ -1,20 +1,16 @@
 """A case in SI units: what its numbers mean for the real fluid, and how far the two are alike."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.similarity import Flow, Number, Properties, compare
 from mesokit.case.units import BOLTZMANN, MATCHES, Units
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.derived import derive
 from mesokit.method.mpcd.expected import setting
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 QUANTITIES = {  # of SI: reduced unit, SI unit
     "length": ("a", "m"),

@@ -1,17 +1,11 @@
 """What `mesokit check` says of a case."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.case import Case
 from mesokit.case.kind import has_run
 from mesokit.method.mpcd.derived import compiling_memory, derive
 from mesokit.method.mpcd.numbers import Derived
 from mesokit.seam.method import Row, Summary
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def summary(case: Case, threads: int | None = None) -> Summary:

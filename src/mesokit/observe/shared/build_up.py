@@ -1,12 +1,11 @@
 """Whether a flow had built up when samples were taken: else its mean is not that of theory."""
 
-from __future__ import annotations
-
 import copy
 import dataclasses
 import math
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
+from mesokit.case.case import Case
 from mesokit.case.describe.digits import two_digits
 from mesokit.observe.shared.caveats import BUILDS_UP, LOWER_BOUND, STEADY
 from mesokit.observe.shared.short_run import CHI_SQUARE, bounded, without_error
@@ -14,9 +13,6 @@ from mesokit.seam.in_units import in_units
 from mesokit.seam.method import BuildUp, method_of
 from mesokit.seam.observable import Accumulator
 from mesokit.seam.result import NOT_STEADY, Comparison, Result, with_error
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 MATTERS = 0.5  # of the standard error: a missing part that is larger is told
 MUCH = 0.05  # of the speed: a missing part that is larger is told, whatever the error

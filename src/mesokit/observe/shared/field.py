@@ -1,22 +1,18 @@
 """What maps share: two axes, and sums in few blocks of time, for a map has many bins."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param
 from mesokit.errors import CaseError
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.floating[Any]]
 CAPACITY = 16  # blocks

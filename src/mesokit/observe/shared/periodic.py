@@ -1,13 +1,7 @@
 """What observables in a box that repeats along every axis share."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 OF = "what is looked at (beads where there are any, those of solutes before those of molecules)"
 

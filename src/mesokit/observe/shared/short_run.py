@@ -1,7 +1,5 @@
 """Whether a run is too short for its blocks of time: then error bars are lower bounds."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A small table in HTML, as notebooks show an object."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

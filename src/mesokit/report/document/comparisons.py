@@ -1,7 +1,5 @@
 """The rows of a table of measured against expected."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """What was conserved, as a table: a row for each quantity that was followed in time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

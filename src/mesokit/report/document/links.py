@@ -1,7 +1,5 @@
 """Links from a page to what lies on the same disk."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from urllib.parse import quote

@@ -1,19 +1,15 @@
 """Figures and films as they stand inside a page."""
 
-from __future__ import annotations
-
 import base64
 import io
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from mesokit.case.amounts import size_text
+from mesokit.case.case import Case
 from mesokit.report.document.links import link_to
 from mesokit.seam.result import Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 LARGEST_SVG = 250_000  # bytes; larger drawings are kept as PNG
 LARGEST_FILM = 8_000_000  # bytes of a film that goes into the page

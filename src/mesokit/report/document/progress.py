@@ -1,7 +1,5 @@
 """Progress of a run as a bar in a notebook, and the reporter that is used unless one is given."""
 
-from __future__ import annotations
-
 import sys
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What the record of a run says, as rows and sentences of a page."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,11 +1,10 @@
 """The report of a run: one file that holds everything, to be read, printed or sent."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
+from mesokit.case.case import Case
 from mesokit.errors import MesokitError
 from mesokit.io.atomic import write_text
 from mesokit.io.pooled import pooled_words
@@ -18,9 +17,6 @@ from mesokit.report.document.template import render
 from mesokit.report.finish.origin import as_text
 from mesokit.seam.method import Row, method_of, summary_of
 from mesokit.seam.result import SUSPICIOUS, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 HEADINGS = {  # of the sections that a run may have, in the order of the page
     "warnings": "Warnings", "lines": "Measured and expected", "figures": "Figures",

@@ -1,7 +1,5 @@
 """Labels of axes that are no longer than their axes."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from typing import Any

@@ -1,7 +1,5 @@
 """Legends that hide no data: data first and theory last, in rows as one reads."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

@@ -1,14 +1,10 @@
 """Where a figure comes from, written into its file: below it, and in its metadata."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from mesokit import __version__
+from mesokit.case.case import Case
 from mesokit.io.checkpoint import digest
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 class Origin(NamedTuple):

@@ -1,7 +1,5 @@
 """A figure as a file, with where it comes from."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path

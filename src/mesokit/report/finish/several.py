@@ -1,7 +1,5 @@
 """Several results in one plot, so that they can be told apart: a colour and a name for each."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 from weakref import WeakKeyDictionary

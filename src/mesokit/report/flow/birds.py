@@ -1,7 +1,5 @@
 """Birds as triangles that point along their headings, in a colour for each direction."""
 
-from __future__ import annotations
-
 import functools
 from typing import Any
 

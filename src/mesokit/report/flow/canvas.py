@@ -1,7 +1,5 @@
 """Panels side by side: what stays, and what changes from one frame of a film to the next."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """What a picture of the flow is drawn from."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Density as colours: how many particles a cell holds."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from mesokit.report.flow.data import Flow

@@ -1,7 +1,5 @@
 """Disks to scale, in colours of what they do; in 3D spheres, shaded and one before the other."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

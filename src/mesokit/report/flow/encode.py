@@ -1,7 +1,5 @@
 """Pictures into one file: MP4 by the ffmpeg that a Python package brings, GIF by Pillow."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path

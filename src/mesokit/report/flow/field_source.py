@@ -1,7 +1,5 @@
 """Pictures from maps: of a velocity, whose results have components, or of a density."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

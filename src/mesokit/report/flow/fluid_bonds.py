@@ -1,17 +1,11 @@
 """Bonds of the fluid's molecules in a picture of its particles."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.report.flow.data import Array
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 class FluidBonds:

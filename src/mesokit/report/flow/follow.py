@@ -6,8 +6,6 @@ Source: B. Jobard and W. Lefer, Visualization in Scientific Computing '97, 43 (1
 kept whole.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pictures from the observable flow-frames."""
 
-from __future__ import annotations
-
 from functools import cached_property
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A number for each bin as a colour."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from mesokit.report.flow.data import Array, Flow, spacing

@@ -1,7 +1,5 @@
 """Where panels and colour bars stand, in inches: a panel has the shape of what it shows."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator, Sequence
 from contextvars import ContextVar

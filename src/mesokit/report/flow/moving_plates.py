@@ -1,17 +1,13 @@
 """Plates that vibrate, where they are at a time."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.method.spheres.common.wall import rows as columns
 from mesokit.method.spheres.common.wall.surfaces import other_walls, surface_rows
 from mesokit.report.flow.shown import Array
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 class Plate(NamedTuple):

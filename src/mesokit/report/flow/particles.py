@@ -1,7 +1,5 @@
 """Particles as dots, and bonds between them as lines."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

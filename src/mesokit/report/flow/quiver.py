@@ -1,7 +1,5 @@
 """Velocity as arrows, with one of a known length above the picture."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

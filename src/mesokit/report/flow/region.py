@@ -1,7 +1,5 @@
 """Which part of the box, and which part of the run, a picture shows."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Colours of a picture: from where to where, which, and what they mean."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

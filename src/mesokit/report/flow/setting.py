@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.smooth import rim_filled
 from mesokit.report.flow.solids import Section
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 SURE, LEAST = 0.5, 0.1  # parts of a bin that are fluid, for its colours to count, to be drawn
 UNUSUAL = 4.0  # times the median error, above which a bin's colours do not count

@@ -4,8 +4,6 @@ Parallel rays, so that lengths can be read off the axes; what lies farther back 
 only darkens a colour, which keeps its hue: so it can be compared with a colour bar.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Disks and spheres at one time, as a picture shows them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

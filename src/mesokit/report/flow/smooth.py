@@ -1,7 +1,5 @@
 """Maps without their noise, and without the bins that hold next to nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from mesokit.report.flow.data import Array

@@ -1,7 +1,5 @@
 """Speed as colours."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from mesokit.report.flow.data import Flow

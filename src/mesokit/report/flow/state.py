@@ -1,16 +1,12 @@
 """Pictures of a simulation in memory, as it is now: before its first step, where it starts from."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.trajectory import masses_and_kinds
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 MOST = 20_000  # particles of the first group, evenly picked where there are more
 

@@ -1,7 +1,5 @@
 """Lines along the velocity, coloured by its size as the map of the speed is."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a user may say of a picture, and of a film."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from mesokit.report.flow.region import Ranges

@@ -1,7 +1,5 @@
 """Vorticity across the plane of the picture: white where nothing turns, lines for either sign."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A probability density: steps with error bars, theory, and the mean."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Molecules in time: size, orientation, the way of their centres and their velocity."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Temperatures in time on logarithmic axes, on which power laws are straight."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is measured of flocks: order in time, bands, clusters."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Histograms beside their theory, and the ratio of both below."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

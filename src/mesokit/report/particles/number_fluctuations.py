@@ -1,7 +1,5 @@
 """How much numbers fluctuate against their means: powers are straight on logarithmic axes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A number in time as a line, thin over the broad one of theory."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from mesokit.report.caption import mathematics

@@ -1,7 +1,5 @@
 """Snapshots: positions above, velocities below, a column for each step."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """S(q): of what is far above 1 at long waves on logarithmic axes, else on plain ones."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

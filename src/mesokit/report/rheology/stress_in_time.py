@@ -1,7 +1,5 @@
 """Stress in time under the shear rate that causes it, as rheometers draw it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,12 +1,10 @@
 """Values that are fine alone and wrong together. Each rule yields what is wrong, key path first."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
 
 from mesokit.case.amounts import count_text
+from mesokit.case.case import Case
 from mesokit.case.checks import whole_cells
 from mesokit.case.component import name_of, show
 from mesokit.case.units import MATCHES
@@ -21,9 +19,6 @@ from mesokit.method.mpcd.checks.walls import moving_surfaces, room, walls
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.molecule import COARSE, MOST_SUBSTEPS, UNSTABLE
 from mesokit.potential.thermal import mean_square
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 MOST_CELLS = MOST_PARTICLES = 2**53  # whole numbers that floats can tell apart
 MOST_CELLS_AMONG_SOLIDS = 2**27  # some hundred bytes for each while tables are made

@@ -1,14 +1,9 @@
 """What a fluid without collisions can have, and where a box may be open."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from mesokit.case.case import Case
 from mesokit.case.component import name_of, show
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def free_flight(case: Case) -> Iterator[str]:

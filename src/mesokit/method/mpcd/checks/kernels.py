@@ -1,18 +1,14 @@
 """What a user's own parts register for compiled code: looked at before anything is compiled."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.outside import is_outside
 from mesokit.case.registry import address
 from mesokit.method.mpcd.collision.protocol import coefficients, collide, contribute, freedom
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.method.mpcd.thermostat.protocol import target
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def kernels(case: Case) -> Iterator[str]:

@@ -1,18 +1,13 @@
 """Walls that are fine alone and wrong together, or in this box: see `combinations`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.geometry.walls import Walls, surfaces
 from mesokit.geometry.walls import room as room_left
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 WALLS = Walls(("no-slip", "slip", "diffuse"), moving=True, turning=True, virtual=True)
 

@@ -1,16 +1,11 @@
 """How far a force that drives a fluid against solids may compress it."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
+from mesokit.case.case import Case
 from mesokit.geometry.shape.array import Array
 from mesokit.geometry.shape.plates import Plates
 from mesokit.method.mpcd.expected import recognise, setting
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def unit_cell(case: Case, axis: int) -> float:

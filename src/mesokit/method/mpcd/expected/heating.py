@@ -1,21 +1,17 @@
 """What friction makes of the temperature of a fluid that no thermostat holds."""
 
-from __future__ import annotations
-
 import contextlib
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import recognise, setting
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.floating[Any]]
 POINTS = 401  # across the flow

@@ -1,10 +1,9 @@
 """What theory says of the neighbours of particles, beads and molecules."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.molecules import free_diffusion
@@ -15,9 +14,6 @@ from mesokit.method.mpcd.expected.selection import (
     independent,
     kind_of,
 )
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 class NeighboursInFluid:

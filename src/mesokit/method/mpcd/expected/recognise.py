@@ -1,11 +1,10 @@
 """Solids whose flow is known: round pipes, drums and gaps, arrays of cylinders and of spheres."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.geometry.shape.array import Array
 from mesokit.geometry.shape.cylinder import Cylinder
 from mesokit.geometry.shape.disk import Disk
@@ -13,9 +12,6 @@ from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.shape.rectangle import Rectangle
 from mesokit.geometry.shape.sphere import Sphere
 from mesokit.geometry.solids.solids import solids_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 class Pipe(NamedTuple):

@@ -1,19 +1,14 @@
 """What theory expects of a fluid whose shear changes in time."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import times_in_shear, without_bonds
 from mesokit.method.mpcd.expected.selection import molecule_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 FORGOTTEN = 15.0  # relaxation times
 

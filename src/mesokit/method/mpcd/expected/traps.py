@@ -1,18 +1,14 @@
 """Where harmonic traps hold solutes, by Boltzmann's distribution."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.method.mpcd.expected.molecules import free_diffusion, spring_of
 from mesokit.method.mpcd.molecule import FLUID
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.floating[Any]]
 LEVEL = 8.0  # relaxation times after which a displacement has levelled off: to 3e-4

@@ -1,12 +1,11 @@
 """How long the bonds of molecules are, and which way they point."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import bond_at_rest, bonds_in_shear, shear_note
@@ -15,9 +14,6 @@ from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAcc
 from mesokit.seam.engine import RunningFluid, Terms
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 @component

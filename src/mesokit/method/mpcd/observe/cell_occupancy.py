@@ -1,13 +1,12 @@
 """How many particles cells hold: a histogram beside Poisson."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import free_volume, solids_of
@@ -17,9 +16,6 @@ from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 FEWEST = 20  # cells
 REACH = 6.0  # standard deviations of the numbers that have a bin of their own

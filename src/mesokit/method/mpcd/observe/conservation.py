@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.columns import forgets, temperature
 from mesokit.method.mpcd.expected import setting
@@ -17,9 +18,6 @@ from mesokit.seam.method import method_of
 from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
 from mesokit.seam.result import NOT_STEADY, Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 ENERGY = "m a^2/tau^2"
 ROWS = 4096  # kept of the time series; every other one is dropped when they are full

@@ -1,11 +1,10 @@
 """Map of the density over two axes."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
@@ -14,10 +13,6 @@ from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import correlated_error
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-
 
 OPEN = 0.5  # part of a bin that is fluid, for it to count
 SPREAD = "root mean square over the map, less what noise adds"

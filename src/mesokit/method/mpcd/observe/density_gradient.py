@@ -1,13 +1,12 @@
 """Density of the fluid along the flow, over a unit cell of what it flows round."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
@@ -19,9 +18,6 @@ from mesokit.seam.estimate import Estimate, noted, of_mean
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 OPEN = 0.1  # part of a slice that is fluid, for it to count
 

@@ -1,12 +1,11 @@
 """How large the domains of two species are, in time."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe.shared.periodic import periodic_all_over
@@ -14,9 +13,6 @@ from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import TimeSeries
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 ROWS = 4096  # kept of the series in time
 CLEAR = 10.0  # standard deviations of noise above which there are domains at all

@@ -1,13 +1,12 @@
 """Storage and loss modulus at the frequency of an oscillating shear."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, option, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -17,9 +16,6 @@ from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 LEAST_SAMPLES = 8  # in a period
 KINETIC_OFF = 0.3  # part of the kinetic stress that molecular chaos misses where flights are short

@@ -1,13 +1,12 @@
 """Volume flux through the box, and the permeability that it means."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.observe.shared.flow_memory import (
@@ -21,9 +20,6 @@ from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 FLUX = {2: "a^2/tau", 3: "a^3/tau"}  # by dimension
 

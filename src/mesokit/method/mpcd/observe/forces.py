@@ -1,14 +1,13 @@
 """Force and torque of the fluid on each solid."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
@@ -27,9 +26,6 @@ from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result, with_error
 from mesokit.statistics import Blocks, TimeSeries
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 FORCE, TORQUE = "m a/tau^2", "m a^2/tau^2"
 NUMBERS = 2**20  # of the time series, for all bodies together

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -22,9 +23,6 @@ from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, State, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 FINE = 480  # bins in memory; those of a result are of several
 DIVISORS = tuple(n for n in range(1, FINE + 1) if FINE % n == 0)

@@ -1,12 +1,11 @@
 """How large molecules are: gyration tensor and, of chains, the end-to-end vector."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.ideal import mean_shape
 from mesokit.method.mpcd.expected.molecules import ends_at_rest, free_bond, gyration, modes_at_rest
@@ -15,9 +14,6 @@ from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAcc
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 PARTS = ("gyration", "end to end")
 

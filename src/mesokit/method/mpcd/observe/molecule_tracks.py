@@ -1,13 +1,12 @@
 """Molecules in time: size, ends, orientation, place and velocity of each."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.ideal import flow_axis, ideal_sizes, undisturbed
 from mesokit.method.mpcd.expected.selection import KIND, group_of, molecule_of
@@ -16,9 +15,6 @@ from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import TimeSeries
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 NUMBERS = 2**20  # of the time series, for all molecules together
 MOST_ROWS = 4096

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import mode_times_of, modes_of, springs_of, substep_of
@@ -21,9 +22,6 @@ from mesokit.seam.estimate import noted
 from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import MultipleTau
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 SHOWN = 3  # modes whose times are compared
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.describe.hints import Either
@@ -29,9 +30,6 @@ from mesokit.statistics import (
     mean_spectrum,
     spectrum,
 )
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 ROWS = 16384  # of the time series
 

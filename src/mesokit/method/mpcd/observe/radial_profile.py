@@ -1,15 +1,14 @@
 """Velocity, density or temperature in rings about an axis."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
@@ -25,9 +24,6 @@ from mesokit.observe.shared.short_run import ENOUGH_FOR_CURVATURE, of_relaxation
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 COMPONENTS = ("radial", "azimuthal", "axial")
 UNITS = {"density": "1/a^d", "temperature": "m a^2/tau^2"}

@@ -1,14 +1,13 @@
 """Where particles are and how fast, at chosen steps."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, show, tag
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
@@ -18,9 +17,6 @@ from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import spread_ids
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 MOST = 8  # pictures side by side
 

@@ -1,12 +1,11 @@
 """The stress of the fluid, kinetic, collisional, of bonds: pressure, and viscosity under shear."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, option, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -22,9 +21,6 @@ from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
 ROUSE = "Rouse molecules, beads with the friction of free particles"

@@ -1,13 +1,12 @@
 """Relaxation modulus from the fluctuations of the stress at rest, and the moduli that follow."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -20,9 +19,6 @@ from mesokit.seam.estimate import Estimate
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import MultipleTau
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 NOISE = 1.0  # standard errors: the integral ends where G first falls below so many
 ROUGH = 0.2  # relative error that hides by how much a theory is approximate

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -21,9 +22,6 @@ from mesokit.seam.estimate import Estimate
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of, unpack
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks, student
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 SHEAR, BONDS, FIRST = "shear stress", "shear stress of bonds", "first normal-stress difference"
 SQUARES = {SHEAR: 1.0, BONDS: 1.0, FIRST: 4.0}  # of x y and x x - y y, of Gaussians

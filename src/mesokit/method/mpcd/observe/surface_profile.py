@@ -1,14 +1,13 @@
 """Density, temperature or speed as a function of the distance from the nearest solid."""
 
-from __future__ import annotations
-
 import functools
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import FINE, solids_of
@@ -22,9 +21,6 @@ from mesokit.method.mpcd.observe.shared.shells import (
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 LABELS = {
     "temperature": ("temperature k_B T", "m a^2/tau^2"),

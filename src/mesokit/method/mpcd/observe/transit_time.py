@@ -1,15 +1,14 @@
 """How long molecules take from one plane across the flow to the next."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import drift_of, flow_axis, flow_sign
@@ -25,9 +24,6 @@ from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 @component

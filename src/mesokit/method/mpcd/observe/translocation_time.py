@@ -1,13 +1,12 @@
 """How long chains take through a plane: from the first bead to the last."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.compression import unit_cell
@@ -22,9 +21,6 @@ from mesokit.method.mpcd.observe.shared.events import (
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 @component

@@ -1,22 +1,17 @@
 """Map of the mean velocity over two axes."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.field import Array, Field, FieldAccumulator
 from mesokit.seam.estimate import Estimate, of_ratio, per_block
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-
 
 FASTEST = 99.5  # percent of the bins are slower than those of the Mach number
 ABOVE = (

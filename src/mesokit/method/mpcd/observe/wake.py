@@ -1,14 +1,13 @@
 """Velocity on the centre line behind a body, and how far the fluid flows back there."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.shape import array
@@ -21,9 +20,6 @@ from mesokit.seam.estimate import Estimate, fit, of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 SURE = 3.0  # standard errors by which the fluid must flow back
 STEP = 0.01  # by which the ends of a body are looked for

@@ -1,15 +1,10 @@
 """Spheres in gravity: along which axes walls end the fall, and along which nothing does."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def _open_falls(case: Case) -> list[str]:

@@ -1,18 +1,12 @@
 """Spheres as trajectories, files for other programs and pictures know them."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.trajectory import Group, Kind
 from mesokit.errors import CaseError
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 NAME = "spheres"
 HAVE = ("position", "velocity", "spin", "image", "id", "mass", "diameter")

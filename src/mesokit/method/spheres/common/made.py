@@ -1,16 +1,12 @@
 """What every single sphere of a case is: its diameter, mass, moment of inertia and kind."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.method.spheres.common.draws import uniform_rows
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.float64]
 SIZES = 60  # purpose of the random numbers of diameters, above METHOD

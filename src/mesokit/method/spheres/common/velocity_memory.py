@@ -1,15 +1,11 @@
 """How long spheres remember their velocity, where no theory knows."""
 
-from __future__ import annotations
+from typing import Any
 
-from typing import TYPE_CHECKING, Any
-
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.geometry.walls import closed_axes
 from mesokit.observe import velocity_autocorrelation
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 class VelocityMemory(velocity_autocorrelation.VelocityMemory):

@@ -1,9 +1,7 @@
 """Dense, disordered starts: spheres grow while they move (Lubachevsky and Stillinger 1990)."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +12,6 @@ from mesokit.method.spheres.hard.engine.collide import Rules
 from mesokit.method.spheres.hard.engine.groups import VELOCITY
 from mesokit.method.spheres.hard.engine.scatter import scattered
 from mesokit.method.spheres.hard.engine.system import Given, System
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 Array = NDArray[np.float64]
 DILUTE = {2: 0.20, 3: 0.10}  # packing fraction of the spheres that begin to grow

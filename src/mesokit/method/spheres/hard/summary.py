@@ -1,13 +1,12 @@
 """Derived numbers of a case of event-driven dynamics, its cost, and warnings."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesokit import theory
 from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.case import Case
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.method.spheres.common import cost, falls
@@ -15,9 +14,6 @@ from mesokit.method.spheres.common.start.lattice import LatticeStart
 from mesokit.method.spheres.hard.walls import wall_rows
 from mesokit.method.spheres.hard.window import collision_rate
 from mesokit.seam.method import Row, Summary
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 MADE_ELASTIC = 0.1  # share of the collisions beyond which a contact time changes the physics
 FREEZES = {2: 0.70, 3: 0.494}  # packing fraction above which they order in equilibrium

@@ -1,17 +1,13 @@
 """What the walls of a case do to hard spheres."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common.wall.surfaces import surface_rows
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.float64]
 

@@ -1,14 +1,9 @@
 """How long a window is: the time after which all spheres are brought to one time."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 from mesokit import theory
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
+from mesokit.case.case import Case
 
 COLLISIONS = 500.0  # of each sphere in a window, about
 INSTANT = 1e-12  # of the mean time between two collisions

@@ -1,9 +1,6 @@
 """What does not go together in a case of soft spheres."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry import walls
@@ -14,9 +11,6 @@ from mesokit.method.spheres.common.wall import plates
 from mesokit.method.spheres.common.wall.surfaces import other_walls, surface_rows
 from mesokit.method.spheres.soft import scales
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 ROUNDING = 1e-5  # relative, of diameters as people write them
 WALLS = walls.Walls(

@@ -1,10 +1,9 @@
 """What theory expects of soft spheres: equilibrium and cooling; it has none of displacements."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.geometry.walls import closed_axes
 from mesokit.method.spheres.common.expected.cooling import Cooling, haff_time, uniform
@@ -12,9 +11,6 @@ from mesokit.method.spheres.common.expected.equilibrium import Equilibrium, stil
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 from mesokit.observe import mean_square_displacement
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def equilibrium(case: Case) -> Equilibrium | None:

@@ -1,12 +1,11 @@
 """Derived numbers of a case of soft spheres, its cost, and warnings."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.case import Case
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.method.spheres.common import cost, falls
@@ -16,9 +15,6 @@ from mesokit.method.spheres.soft.checks import rubs
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import Row, Summary
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 RATE_OF_POTENTIALS = 2.5e6  # sphere-steps per second and core (docs/benchmark)
 USUAL_NEIGHBOURS = 66.0  # within the reach, where this was measured

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.loops.clock import BEADS, CELLS, FINISH, FIRST, SORT, SWEEP
 from mesokit.loops.threads import Threads
@@ -29,9 +30,6 @@ from mesokit.method.mpcd.engine.pieces import Piece, of_state, pieces, require_f
 from mesokit.method.mpcd.molecule import Springs
 from mesokit.scalar.system import TICK
 from mesokit.statistics import Tally
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 P = ParamSpec("P")
 T = TypeVar("T")

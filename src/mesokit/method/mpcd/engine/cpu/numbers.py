@@ -1,14 +1,12 @@
 """The numbers that follow from a case before any memory is allocated: counts, masses, precision."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.geometry.solids.solids import slit_of, solids_of
 from mesokit.loops.layout import Molecules, Singles
@@ -20,9 +18,6 @@ from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
     with_count,
 )
 from mesokit.method.mpcd.groups import fluid_volume
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 # Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT.
 MOMENTUM_BITS, MASS_BITS, ENERGY_BITS = 42, 44, 39

@@ -1,14 +1,13 @@
 """Execution on the ranks of MPI: each has the particles of a block of cells, on its threads."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.loops.clock import FIRST, MOVE, SHARE, WAIT
 from mesokit.loops.threads import Threads
@@ -34,9 +33,6 @@ from mesokit.method.mpcd.engine.domains.readings import SharedReadings, SharedSo
 from mesokit.method.mpcd.engine.domains.state import ROOT, SPREAD, Spread
 from mesokit.method.mpcd.engine.pieces import Piece, of_state, pieces, require_finite
 from mesokit.scalar.system import TICK
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def pieces_of(memory: Memory) -> Iterator[Piece]:

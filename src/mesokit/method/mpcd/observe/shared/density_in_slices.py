@@ -1,13 +1,12 @@
 """The density of an MPCD fluid, or of molecules in it, in slices."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import springs_of
@@ -17,9 +16,6 @@ from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.result import Comparison
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 LABELS = {
     "particles": "density",

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.selection import group_of
 from mesokit.method.mpcd.observe.shared.durations import Durations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, State, pack, unpack
 from mesokit.seam.result import Array, Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 FEW = 5.0  # events of each molecule: with fewer the mean misses those that take long
 

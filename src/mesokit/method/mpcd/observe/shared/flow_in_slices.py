@@ -1,14 +1,13 @@
 """The steady flow of an MPCD fluid in slices, and the fit that suits it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import slit_of
@@ -17,9 +16,6 @@ from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
 from mesokit.observe.shared.short_run import ENOUGH_FOR_CURVATURE, of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.result import Comparison
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 VISCOSITY = "a^2/tau"
 

@@ -1,13 +1,12 @@
 """How long the momentum of a driven flow is remembered, and what that leaves of its error bar."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
+from mesokit.case.case import Case
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.numbers import TIMES
@@ -15,9 +14,6 @@ from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.method import BuildUp
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 LONGEST = 100.0  # relaxation time that a run may show, in lengths of the run with its warm-up
 

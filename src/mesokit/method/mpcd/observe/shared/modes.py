@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.case.component import component, param
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -17,9 +18,6 @@ from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, State, pack, unpack
 from mesokit.seam.result import Comparison
 from mesokit.statistics import MultipleTau
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.floating[Any]]
 SHOWN = 6  # wave numbers in the comparisons, longest waves first

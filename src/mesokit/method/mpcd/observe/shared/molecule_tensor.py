@@ -5,12 +5,11 @@ shorter run sees each molecule in one state, and the mean is off by the scatter 
 one sample over the root of their number.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.method.mpcd.expected.molecules import least_times_of
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
 from mesokit.observe.shared.over_molecules import OwnMeans
@@ -18,9 +17,6 @@ from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def kept(times: float) -> float:

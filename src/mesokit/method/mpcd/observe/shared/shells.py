@@ -1,23 +1,19 @@
 """What profiles in shells share: particles are sorted by a distance, not by a coordinate."""
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.observe.shared.mode_chi_square import mode_chi_square
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator
 from mesokit.seam.result import Comparison
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.floating[Any]]
 NUMBER, MASS, ENERGY, MOMENTUM = 0, 1, 2, 3  # rows of the sums; momentum and what follows it

@@ -1,21 +1,17 @@
 """The temperature of an MPCD fluid in slices: that of the thermostat, or the heat of friction."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.heating import settled, temperature_rise
 from mesokit.method.mpcd.observe.shared.flow_in_slices import refuse_kinds
 from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.result import Comparison
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 CORRELATIONS = 0.02  # largest measured rise for (shear rate)^2 that molecular chaos leaves out
 ACCURACY = 6  # per cent of the rise by friction, measured up to Mach number 0.6

@@ -1,20 +1,15 @@
 """What tensors share: block averages of their parts, and sums of elements with an error."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 class TensorAccumulator(BlockAccumulator):

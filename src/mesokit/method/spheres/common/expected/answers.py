@@ -1,11 +1,10 @@
 """What the methods of spheres answer to observables that they share."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.method.spheres.common.expected.equilibrium import Equilibrium
 from mesokit.method.spheres.common.expected.slices import (
     DensityInSlices,
@@ -13,9 +12,6 @@ from mesokit.method.spheres.common.expected.slices import (
     TemperatureInSlices,
 )
 from mesokit.method.spheres.common.expected.velocities import Cumulant, VelocitiesOfSpheres
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 ALL = (DensityInSlices, FlowInSlices, TemperatureInSlices, VelocitiesOfSpheres, Cumulant)
 

@@ -1,14 +1,10 @@
 """What is known of the temperature of spheres in time."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from mesokit import theory
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
+from mesokit.case.case import Case
 
 
 class Cooling(NamedTuple):

@@ -1,15 +1,9 @@
 """How often hard spheres collide, by the pressure that they have."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 from mesokit import theory
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-
+from mesokit.case.case import Case
 
 LAWS = {
     2: "virial series of the fluid, 1 % off at a packing fraction of 0.6 and more above",

@@ -1,15 +1,14 @@
 """Density, flow and temperature of spheres in slices across an axis."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.geometry.walls import closed_axes
 from mesokit.method.spheres.common.expected.equilibrium import Equilibrium, still_walls, surfaces
 from mesokit.method.spheres.common.groups import ids_of_kind, refuse_molecules
@@ -17,9 +16,6 @@ from mesokit.observe.shared.profile import Compared, ProfileAccumulator
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.result import Comparison
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.float64]
 Find = Callable[["Case"], Equilibrium | None]

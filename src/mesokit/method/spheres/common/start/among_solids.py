@@ -1,17 +1,11 @@
 """Random places beside solids of any shape."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.float64]
 TRIES = 2000  # of all that have no place yet

@@ -1,14 +1,13 @@
 """What a run of spheres starts from: the start of its case, or arrays, all checked."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
@@ -16,9 +15,6 @@ from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.start import thermal
 from mesokit.method.spheres.common.start.lattice import shut
 from mesokit.method.spheres.common.start.protocol import Array, Placed, Started
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 ROUNDING = 1e-5  # of a diameter: files keep places as float32
 ARRAYS, RUN = ("positions", "velocities", "spins"), "spheres.start.run"

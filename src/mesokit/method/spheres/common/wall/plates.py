@@ -1,14 +1,9 @@
 """Plates around spheres may vibrate where there is room."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def check_plates(case: Case) -> None:

@@ -1,23 +1,19 @@
 """The surfaces of a case as rows of numbers, whatever they do to spheres."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry.region import Part, Room, Term
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common.wall import rows as columns
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 Array = NDArray[np.float64]
 ROUND = {"ball": columns.OUTSIDE, "rod": columns.OUTSIDE}

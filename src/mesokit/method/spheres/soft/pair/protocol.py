@@ -4,19 +4,15 @@ The first argument of the scalar functions is the NamedTuple of parameters that 
 class picks the implementation.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param
 from mesokit.case.registry import family
 from mesokit.potential.protocol import Pair
 from mesokit.scalar.jit import generic, scalar
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 SOLID_SPHERES = 2 / 7  # tangential over normal stiffness: sliding and pressing take equally long
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 from pydantic import model_validator
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.spheres.soft.pair.protocol import (
     ContactLaw,
@@ -16,9 +17,6 @@ from mesokit.method.spheres.soft.pair.protocol import (
     normal_force,
     rate_of_now,
 )
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 USUAL_RESTITUTION, USUAL_TIME = 0.8, 0.01
 
