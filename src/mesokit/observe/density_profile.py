@@ -1,22 +1,18 @@
 """Number of particles, or of molecules, per cell in slices across an axis."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import Array, Compared, Profile, ProfileAccumulator
+from mesokit.seam.engine import RunningFluid, RunningSpheres
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 
 class DensityInSlices(Protocol):

@@ -1,26 +1,22 @@
 """How velocities are distributed: a component and the speed, beside Maxwell."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.observe.shared import chi_square
 from mesokit.observe.shared.profile import KIND
+from mesokit.seam.engine import RunningFluid, RunningSpheres
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 FARTHEST = 5.0  # thermal velocities: what is beyond counts in the last bins
 

@@ -1,24 +1,20 @@
 """Mean velocity in slices across an axis, and the viscosity that its shape gives."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
+from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import KIND, Array, Compared, Profile, ProfileAccumulator
+from mesokit.seam.engine import RunningFluid, RunningSpheres
 from mesokit.seam.estimate import Estimate, of_ratio
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 
 class FlowInSlices(Protocol):

@@ -1,20 +1,16 @@
 """Results and figures in the units of their case, whatever observables write."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
+from typing import Concatenate, ParamSpec, TypeVar
 
+from mesokit.case.case import Case
 from mesokit.seam.method import method_of
+from mesokit.seam.result import Result
 from mesokit.seam.units import CELLS, Units
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.result import Result
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -1,7 +1,5 @@
 """What theory says between the points of a study: that of cases which were not run."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping, Sequence

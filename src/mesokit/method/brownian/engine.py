@@ -1,21 +1,17 @@
 """The particles in memory. They do not feel one another, so threads share them and never meet."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.method.brownian.kernel import Motion, scatter, wander
 from mesokit.scalar.random import Counter
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import Array, Integers, State
+from mesokit.seam.engine import Array, Integers, State
 
 
 class Brownians:

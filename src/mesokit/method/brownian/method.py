@@ -1,15 +1,14 @@
 """Brownian motion, as the rest of the package knows it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mesokit.case.amounts import count_text, duration_text, number, size_text
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.given.array_file import EXPECTED, array_in_file
 from mesokit.case.given.outside_box import warn_outside
@@ -21,11 +20,8 @@ from mesokit.method.brownian.section import Sections
 from mesokit.observe import mean_square_displacement
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.processes.cores import usable_cores
+from mesokit.seam.engine import Array, Integers
 from mesokit.seam.method import Columns, InitialState, Method, Row, Summary
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import Array, Integers
 
 RATE = 14e6  # particle-steps per second of a thread, where the project measures (docs/benchmark.md)
 BYTES = {2: 24, 3: 36}  # for each particle

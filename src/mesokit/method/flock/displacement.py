@@ -1,19 +1,15 @@
 """What is expected of the mean square displacement of birds."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.observe import mean_square_displacement
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import Array, Integers
+from mesokit.seam.engine import Array, Integers
 
 LATE = 5.0  # times in which a heading is forgotten, after which the way is a random walk
 

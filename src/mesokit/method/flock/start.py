@@ -1,13 +1,12 @@
 """What birds start from: drawn, or given by arrays, files and earlier runs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.given.array_file import EXPECTED, array_in_file
 from mesokit.case.given.outside_box import warn_outside
@@ -20,10 +19,7 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.io.snapshot_file import read_snapshot
 from mesokit.method.flock.engine.step import scatter_headings, scatter_places
 from mesokit.scalar.random import Counter
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import Array
+from mesokit.seam.engine import Array
 
 TRIES = 10_000  # of places before there is no room
 MOST_BOXES = 2.0**30

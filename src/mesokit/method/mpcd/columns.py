@@ -1,18 +1,14 @@
 """What the log of a run may tell of an MPCD fluid."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
+from mesokit.seam.engine import RunningFluid
 from mesokit.seam.method import Columns
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningFluid
 
 Array = NDArray[np.floating[Any]]
 

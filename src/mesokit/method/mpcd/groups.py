@@ -1,18 +1,12 @@
 """The particles of a case: those of the fluid, then the beads of what is dissolved in it."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.trajectory import Group, Kind
 from mesokit.geometry.solids.solids import free_volume
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.solutes import Solutes
+from mesokit.method.mpcd.solutes import Solutes
 
 
 def groups(case: Case) -> tuple[Group, ...]:

@@ -1,26 +1,22 @@
 """What all profiles along an axis share: bins finer than a cell, and sums in blocks of time."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param
 from mesokit.geometry.walls import closed_axes
 from mesokit.observe.shared.mode_chi_square import mode_chi_square
+from mesokit.seam.engine import RunningFluid, RunningSpheres
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningFluid, RunningSpheres
 
 Array = NDArray[np.floating[Any]]
 KIND = "which of spheres.kinds: name, or number from 1 (all spheres unless said)"

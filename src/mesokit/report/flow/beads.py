@@ -1,23 +1,19 @@
 """Beads of solutes and the bonds between them, drawn over the flow."""
 
-from __future__ import annotations
-
 import itertools
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.flow.data import Array, Beads
 from mesokit.report.flow.region import Region
+from mesokit.report.flow.state import State
 from mesokit.report.style import COLOURS
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.report.flow.state import State
 
 SMALLEST = 1.6  # diameter, in points
 EDGE, BOND = 0.2, 0.45  # widths of the edge and of bonds, of the diameter

@@ -1,27 +1,23 @@
 """What the colours of disks and spheres mean. A new one is a function and a row of `COLOURS`."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError, RunError
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.observe.hexatic_order import psi_6
 from mesokit.report import style
 from mesokit.report.caption import rounded, symbols
 from mesokit.report.flow.data import Array
 from mesokit.report.flow.scale import Scale
+from mesokit.report.flow.state import State
 from mesokit.report.style import labelled
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.report.flow.state import State
 
 REACH = 1.2  # times the sum of their radii: how far neighbours are apart at most
 MUCH = 3.0  # times, by which speeds change

@@ -1,10 +1,9 @@
 """The kinds of pictures. A new one is a file here and a name in `KINDS`."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
+from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
 from mesokit.report.flow import (
@@ -21,10 +20,7 @@ from mesokit.report.flow import (
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.report.flow.source import Found
+from mesokit.report.flow.source import Found
 
 
 class Panel(Protocol):

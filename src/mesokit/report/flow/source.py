@@ -1,25 +1,21 @@
 """Where the numbers of a picture come from, among all that a run has kept."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError, RunError
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.observe.flow_frames import FlowFrames
 from mesokit.report.flow.data import Flow
+from mesokit.report.flow.state import State
 from mesokit.report.flow.view import View
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.report.flow.state import State
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Result
 
 Axes = tuple[str, str]
 ALL = View()

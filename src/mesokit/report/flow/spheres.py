@@ -1,30 +1,25 @@
 """Pictures from the disks and spheres of a trajectory."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.caption import in_cells
 from mesokit.report.flow.colouring import Frame, chosen
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.shown import Spheres
+from mesokit.report.flow.state import State
 from mesokit.report.flow.view import View
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.report.flow.state import State
 
 
 def from_the_side(gravity: Sequence[float]) -> tuple[str, str]:

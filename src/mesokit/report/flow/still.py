@@ -1,15 +1,15 @@
 """One picture of the flow."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.caption import at, rounded, symbols
 from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
@@ -18,14 +18,10 @@ from mesokit.report.flow.noise import note, smooth, smoothing
 from mesokit.report.flow.region import frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, choose, sources
+from mesokit.report.flow.state import State
 from mesokit.report.flow.view import View
 from mesokit.seam.in_units import of_case
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.report.flow.state import State
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Result
 
 
 @of_case

@@ -1,21 +1,16 @@
 """Pictures from the particles of a trajectory, in bins of one cell."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.fluid_bonds import FluidBonds
 from mesokit.report.flow.setting import Setting
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.report.flow.state import State
+from mesokit.report.flow.state import State
 
 
 class TrajectorySource:

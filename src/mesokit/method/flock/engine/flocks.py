@@ -1,14 +1,13 @@
 """The birds in memory: an engine on the threads of one machine."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.none import Nothing
 from mesokit.geometry.solids.solids import Solids, solids_of
@@ -17,10 +16,7 @@ from mesokit.loops.threads import Threads
 from mesokit.method.flock.engine.memory import Physics, axes_of, make
 from mesokit.method.flock.engine.step import step
 from mesokit.scalar.random import Counter
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import Array, Integers, State
+from mesokit.seam.engine import Array, Integers, State
 
 FEWEST = 2000  # birds for each thread: with fewer, barriers cost more than the work
 

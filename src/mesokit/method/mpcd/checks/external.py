@@ -1,17 +1,12 @@
 """Checks of external forces on beads: pulls, traps, magnetic fields."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.molecule import UNSTABLE
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.solutes import Solutes
+from mesokit.method.mpcd.solutes import Solutes
 
 
 def external(case: Case, given: Solutes) -> Iterator[str]:

@@ -1,22 +1,17 @@
 """Solutes that are fine alone and wrong with the rest of a case: see `combinations`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from mesokit.case.case import Case
 from mesokit.case.component import name_of, one_of, show
 from mesokit.case.registry import family_of
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.checks.external import external
 from mesokit.method.mpcd.molecule import FLUID, MOST_SUBSTEPS, UNSTABLE
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.potential.thermal import mean_square
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.solutes import Solutes
 
 MOST_EXCLUDED = 0.9  # of the fluid's volume
 MOST_BEADS = 2**31 - 1  # their numbers are 32-bit

@@ -1,5 +1,7 @@
 """Sound: velocity modes along their wave vector, their frequency and damping."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Decay of transverse velocity modes, and the viscosity that it gives."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np

@@ -8,13 +8,15 @@ as dense as far away.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.geometry.solids.contact import MARGIN
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.method.mpcd.start.arrays import OfFirst, rows_of
 from mesokit.method.mpcd.start.conformation import connected, drawn, nearest_of
 from mesokit.method.mpcd.start.draws import Draws
@@ -24,10 +26,6 @@ from mesokit.potential.protocol import Pair
 from mesokit.potential.thermal import energies
 from mesokit.scalar.fixed_point import added_halves, halves
 from mesokit.scalar.random import FIRST_BEAD, INITIAL_POSITION, INITIAL_VELOCITY
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-    from mesokit.method.mpcd.solutes import Solutes
 
 FIRST_AGAIN = 2**20  # draws of this number and on are of those that were put elsewhere
 TRIES = 1000

@@ -1,18 +1,13 @@
 """Where there is room for particles at the start: not in solids, and within the box."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
 from mesokit.geometry.solids.contact import MARGIN
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
 Floats = NDArray[np.float64]
 

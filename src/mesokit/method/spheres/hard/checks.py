@@ -1,19 +1,13 @@
 """What does not go together in a case of event-driven dynamics."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry import walls
+from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common import falls
 from mesokit.method.spheres.common.wall import plates
 from mesokit.method.spheres.hard.walls import wall_rows
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.geometry.surface import Surface
 
 WALLS = walls.Walls(("no-slip", "slip", "diffuse"), moving=True, contact=walls.CONTACT)
 

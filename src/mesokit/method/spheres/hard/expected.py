@@ -1,14 +1,13 @@
 """What theory expects of hard spheres: equilibrium, ways, memory, neighbours and cooling."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.cooling import Cooling, haff_time, uniform
 from mesokit.method.spheres.common.expected.enskog import fluid_note
@@ -21,10 +20,7 @@ from mesokit.method.spheres.common.expected.equilibrium import (
 from mesokit.method.spheres.common.expected.neighbours import NeighboursOfSpheres
 from mesokit.method.spheres.common.velocity_memory import VelocityMemory
 from mesokit.observe import mean_square_displacement
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import Array, Integers
+from mesokit.seam.engine import Array, Integers
 
 
 def equilibrium(case: Case) -> Equilibrium | None:

@@ -1,10 +1,9 @@
 """Event-driven dynamics, as the rest of the package knows it."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.spheres.common.expected.answers import answers
 from mesokit.method.spheres.common.groups import groups
@@ -15,6 +14,7 @@ from mesokit.method.spheres.common.start.first_state import (
     first_state,
     starts,
 )
+from mesokit.method.spheres.common.start.protocol import Started
 from mesokit.method.spheres.hard.checks import check
 from mesokit.method.spheres.hard.engine.engine import EventDriven
 from mesokit.method.spheres.hard.expected import (
@@ -28,10 +28,6 @@ from mesokit.method.spheres.hard.observe import MeanSquareDisplacement
 from mesokit.method.spheres.hard.section import KEYS, Sections
 from mesokit.method.spheres.hard.summary import summary
 from mesokit.seam.method import Columns, Enclosure, InitialState, Method
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.start.protocol import Started
 
 
 def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:

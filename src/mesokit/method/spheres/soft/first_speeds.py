@@ -1,24 +1,19 @@
 """How fast spheres move that start with the velocities of arrays, files and earlier runs."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.start.first_state import given_state
+from mesokit.method.spheres.common.start.protocol import Array, Placed
 from mesokit.method.spheres.common.wall.surfaces import room_of
 from mesokit.method.spheres.soft import scales
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.start.protocol import Array, Placed
-
 
 HOT = 2.0  # of the energy that the step is made for, from which it is shorter
 TAIL = 5.0  # thermal velocities of the fastest of many

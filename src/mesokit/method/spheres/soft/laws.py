@@ -1,15 +1,15 @@
 """From the section of a case to the numbers that the loops work with."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
+from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.wall.surfaces import other_walls, room_of, surface_rows
 from mesokit.method.spheres.soft.checks import rubs
 from mesokit.method.spheres.soft.engine.central import Central
@@ -23,10 +23,6 @@ from mesokit.method.spheres.soft.scales import (
     timestep_of,
 )
 from mesokit.potential.protocol import central
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.made import Made
 
 Array = NDArray[np.float64]
 PARTS = 2.0**50  # quanta in the force of an overlap of a diameter: beyond it there is room for 2^11

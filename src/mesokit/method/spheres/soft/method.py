@@ -1,10 +1,9 @@
 """Soft spheres, as the rest of the package knows them."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.spheres.common.expected.answers import answers
 from mesokit.method.spheres.common.expected.neighbours import NeighboursOfSpheres
@@ -16,6 +15,7 @@ from mesokit.method.spheres.common.start.first_state import (
     first_state,
     starts,
 )
+from mesokit.method.spheres.common.start.protocol import Started
 from mesokit.method.spheres.common.velocity_memory import VelocityMemory
 from mesokit.method.spheres.soft.checks import check
 from mesokit.method.spheres.soft.engine.engine import SoftEngine
@@ -26,10 +26,6 @@ from mesokit.method.spheres.soft.scales import timestep_of
 from mesokit.method.spheres.soft.section import KEYS, Sections
 from mesokit.method.spheres.soft.summary import summary
 from mesokit.seam.method import Columns, Enclosure, InitialState, Method
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.start.protocol import Started
 
 
 def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:

@@ -1,17 +1,12 @@
 """Times and speeds of a case of soft spheres: how long a contact takes, what a step may be."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
+from mesokit.case.case import Case
+from mesokit.geometry.surface import Surface
 from mesokit.geometry.walls import surfaces
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.geometry.surface import Surface
 
 IN_CONTACT, WARNED, REFUSED = 50, 20, 10  # steps in a contact: usual, and fewest without complaint
 OF_FLIGHT = 0.005  # of the time in which a sphere of a fluid flies its diameter

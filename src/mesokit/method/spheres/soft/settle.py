@@ -1,14 +1,13 @@
 """Spheres that fall, collide and come to rest."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.wall.rows import AMPLITUDE, MOVES
 from mesokit.method.spheres.common.wall.surfaces import other_walls, room_of, surface_rows
 from mesokit.method.spheres.soft.engine.contact.force import OWN
@@ -16,10 +15,6 @@ from mesokit.method.spheres.soft.engine.groups import INVERSE, Motion
 from mesokit.method.spheres.soft.engine.system import Given, System
 from mesokit.method.spheres.soft.laws import contact_of, others_of
 from mesokit.method.spheres.soft.pair.spring_dashpot import SpringDashpot
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.made import Made
 
 Array = NDArray[np.float64]
 RESTITUTION = 0.3  # low, so that they soon lie

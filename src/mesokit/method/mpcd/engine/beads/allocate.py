@@ -1,9 +1,7 @@
 """The memory of solutes: beads, bonds, lists, as compiled code takes them."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +9,8 @@ from numpy.typing import NDArray
 from mesokit.method.mpcd.engine.beads.external import external_of
 from mesokit.method.mpcd.engine.beads.neighbours import GAP, Neighbours
 from mesokit.method.mpcd.engine.beads.state import GROUP, Beads, KindsOfLinks
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.potential.several import Several
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.solutes import Solutes
 
 ROOM = 1.5  # times as many neighbours as beads packed as densely as spheres can be
 

@@ -1,21 +1,17 @@
 """External forces on single beads: pulls, traps, magnetic fields."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.intrinsics import floor
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.solutes import Solutes
 
 
 class External(NamedTuple):

@@ -1,8 +1,6 @@
 """Readings of the beads of solutes for observables, and their state for checkpoints."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +15,11 @@ from mesokit.method.mpcd.engine.beads.interactions import Energy
 from mesokit.method.mpcd.engine.beads.neighbours import MADE, refresh
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
+from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.method.mpcd.engine.embedded.readings import energy_in_fluid, refuse_faults
 from mesokit.scalar.fixed_point import total
 from mesokit.scalar.vector import scaled
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.engine.cpu.memory import Memory
 
 Floats = NDArray[np.float64]
 ALONE = Worker(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,13 +36,11 @@ from mesokit.method.mpcd.engine.cpu.groups import (
     Walls,
 )
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.cpu.physics import Physics
 from mesokit.method.mpcd.engine.cpu.sort import Order
 from mesokit.method.mpcd.engine.embedded.allocate import embedded_of
 from mesokit.method.mpcd.engine.virtual.allocate import virtual_particles, with_clearance
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
 Floats = NDArray[np.float64]
 MOST = 2**31 - 2

@@ -1,10 +1,8 @@
 """The cells of one rank: its block, its halo, its partners and the memory of its messages."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +10,8 @@ from numpy.typing import NDArray
 from mesokit.geometry.solids.clearance import Held
 from mesokit.loops.layout import LANES, record_length, sums_length, zeros
 from mesokit.method.mpcd.engine.cpu.grid import Part
+from mesokit.method.mpcd.engine.cpu.memory import Memory
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.domains.beads.halo_memory import halo_of, reach_of_beads
 from mesokit.method.mpcd.engine.domains.blocks.region import (
     Region,
@@ -27,12 +27,8 @@ from mesokit.method.mpcd.engine.domains.messages.mpi import post
 from mesokit.method.mpcd.engine.domains.messages.shared import METER_SIZE, Shared
 from mesokit.method.mpcd.engine.virtual.gradient import PROBES
 from mesokit.method.mpcd.engine.virtual.particles import FlowAtSurface
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.potential.thermal import mean_square
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.engine.cpu.memory import Memory
-    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-    from mesokit.method.mpcd.solutes import Solutes
 
 HALO = 2  # cells around a block
 STRAY = 0.4  # cells that a particle of thermal speed flies between two migrations

@@ -1,9 +1,6 @@
 """Arrays for beads that interact with fluid particles by a pair potential (shapes: `state.py`)."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,13 +9,10 @@ from mesokit.method.mpcd.engine.beads.allocate import cells_of_beads
 from mesokit.method.mpcd.engine.beads.neighbours import GAP as LISTS_GAP
 from mesokit.method.mpcd.engine.beads.neighbours import Neighbours
 from mesokit.method.mpcd.engine.cpu.grid import Grid
-from mesokit.method.mpcd.engine.cpu.numbers import fastest_surface
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
 from mesokit.method.mpcd.engine.embedded.state import GAP, PARTNERS, Embedded
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.potential.thermal import boltzmann_volume
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-    from mesokit.method.mpcd.solutes import Solutes
 
 FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
 NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a run (chance 1e-14)

@@ -1,9 +1,5 @@
 """The energy of solutes in the fluid that they act on, and what went wrong with them."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +10,7 @@ from mesokit.loops.threads import Worker
 from mesokit.method.mpcd.engine.beads.neighbours import apart
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
+from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
 from mesokit.method.mpcd.engine.embedded.near import find_beads
 from mesokit.method.mpcd.engine.embedded.state import STEP, TOO_FAR, TOO_HARD, WHAT, WHICH
@@ -21,9 +18,6 @@ from mesokit.potential.protocol import central
 from mesokit.scalar.fixed_point import quanta, total
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.engine.cpu.memory import Memory
 
 MOST = 2.0**60  # units of energy of one pair: of particles that overlap, it is not told exactly
 

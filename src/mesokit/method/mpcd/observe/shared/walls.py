@@ -1,21 +1,17 @@
 """What observers of the walls share: when the surfaces' momentum is counted, and how it is read."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import slit_of
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.observable import State
 from mesokit.statistics import Tally
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningFluid
-    from mesokit.seam.observable import State
 
 
 def require_counted(case: Case, quantity: str) -> None:

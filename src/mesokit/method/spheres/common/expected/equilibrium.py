@@ -1,14 +1,11 @@
 """Thermal equilibrium of spheres: when they are in it, and what they are like then."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.geometry.surface import Surface
+from mesokit.case.case import Case
+from mesokit.geometry.surface import Surface
 
 
 class Equilibrium(NamedTuple):

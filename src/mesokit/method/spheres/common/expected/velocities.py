@@ -1,23 +1,19 @@
 """How the velocities of spheres are distributed, and how far that is from Maxwell's."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.cooling import rate
 from mesokit.method.spheres.common.expected.slices import Find
 from mesokit.method.spheres.common.groups import ids_of_kind
 from mesokit.method.spheres.common.made import made
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
+from mesokit.seam.engine import RunningSpheres
 
 Array = NDArray[np.float64]
 FEW = 0.01  # of the collisions, made elastic by a contact time: they do not change the law

@@ -1,22 +1,18 @@
 """Temperature of spheres in time: of their motion and of their rotation."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
+from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.method.spheres.common.observe.samples import Samples
+from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import LOWER_BOUND, Array, Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
 
 PARTS, UNIT = ("translation", "rotation"), "m a^2/tau^2"
 

@@ -1,20 +1,16 @@
 """Temperature of each kind of spheres, over that of all."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
 
 
 @component

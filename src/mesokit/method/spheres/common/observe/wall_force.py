@@ -1,22 +1,17 @@
 """Force of spheres on the walls."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.estimate import Array, Estimate, of_mean
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import RunningSpheres
-
 
 ROUNDING = 1e-12  # of a force
 STILL = 1e-3  # of the weight that their momentum may grow by in a unit of time

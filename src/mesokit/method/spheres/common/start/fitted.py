@@ -1,20 +1,14 @@
 """Spheres as a file has them, and whether they are those of a case."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.start.protocol import Array, Placed
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.made import Made
 
 ROUNDING = 1e-5  # relative, of numbers in single precision and in texts
 

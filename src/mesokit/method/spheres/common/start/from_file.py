@@ -1,19 +1,15 @@
 """Spheres where a file of another program, or an export, has them."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
+from mesokit.case.case import Case
 from mesokit.case.component import FileName, component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.io.snapshot_file import read_snapshot
+from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.start.fitted import fitted
 from mesokit.method.spheres.common.start.protocol import Placed, SphereStart
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.made import Made
 
 
 @component

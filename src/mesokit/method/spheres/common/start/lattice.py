@@ -1,23 +1,19 @@
 """Spheres on a lattice that fills the box."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.start.protocol import Array, Placed, SphereStart
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.made import Made
 
 Integers = NDArray[np.int64]
 # places within a unit cell, in units of its sides, and how long these are relative to one another

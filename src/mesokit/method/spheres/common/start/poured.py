@@ -1,20 +1,16 @@
 """Spheres that have fallen into a heap."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.start.protocol import Placed, SphereStart
 from mesokit.method.spheres.common.start.random import RandomStart
 from mesokit.method.spheres.common.wall.surfaces import room_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.made import Made
 
 APART = 1.003  # diameters of hard ones while they fall: none lies on another afterwards
 

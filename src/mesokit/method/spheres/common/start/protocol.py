@@ -1,21 +1,17 @@
 """What a start answers: places of spheres, and velocities where they are not to be drawn."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component
 from mesokit.case.registry import family
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.made import Made
+from mesokit.method.spheres.common.made import Made
 
 Array = NDArray[np.float64]
 

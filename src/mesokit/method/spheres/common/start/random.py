@@ -1,17 +1,13 @@
 """Spheres at random places."""
 
-from __future__ import annotations
+from typing import Literal
 
-from typing import TYPE_CHECKING, Literal
-
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
+from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.start.among_solids import among_solids
 from mesokit.method.spheres.common.start.protocol import Placed, SphereStart
 from mesokit.method.spheres.common.wall.surfaces import other_walls, room_of, surface_rows
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.made import Made
 
 
 @component

@@ -1,18 +1,18 @@
 """The engine of event-driven dynamics, as a simulation and its observables know it."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.moments import moments
+from mesokit.method.spheres.common.start.protocol import Started
 from mesokit.method.spheres.common.wall.surfaces import room_of
 from mesokit.method.spheres.hard.engine import groups
 from mesokit.method.spheres.hard.engine.collide import Rules
@@ -20,18 +20,11 @@ from mesokit.method.spheres.hard.engine.system import Given, System
 from mesokit.method.spheres.hard.heating.protocol import Motion
 from mesokit.method.spheres.hard.walls import wall_rows
 from mesokit.method.spheres.hard.window import flight_bins, instant, window
-from mesokit.seam.engine import Interrupted
+from mesokit.seam.engine import Integers, Interrupted, State
 
 Array = NDArray[np.float64]
 
 FREE_TIMES = "free times"  # what an observable says that it needs
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.start.protocol import Started
-    from mesokit.seam.engine import Integers, State
 
 
 class EventDriven:

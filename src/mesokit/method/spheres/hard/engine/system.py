@@ -1,10 +1,8 @@
 """Spheres in memory, and the verbs on them: run to a time, read, keep, restore."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +16,7 @@ from mesokit.method.spheres.hard.engine.flights import no_flights
 from mesokit.method.spheres.hard.engine.groups import Lists, Queue, SphereMemory, Tally, World
 from mesokit.method.spheres.hard.engine.run import AT_ONCE, advance, read, rebuild, synchronise
 from mesokit.processes.signals import heard
-from mesokit.seam.engine import Interrupted
-
-if TYPE_CHECKING:
-    from mesokit.seam.engine import State
+from mesokit.seam.engine import Interrupted, State
 
 Array = NDArray[np.float64]
 WANTED = {2: 10.0, 3: 14.0}  # spheres on a list: more are looked at longer, fewer are made anew

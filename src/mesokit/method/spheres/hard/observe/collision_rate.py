@@ -1,23 +1,19 @@
 """How often hard spheres collide."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.method.spheres.common.expected.enskog import pair_rate, root_of_temperature
+from mesokit.seam.engine import CollidingSpheres
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import CollidingSpheres
 
 MANY = 25  # collisions, of which blocks know the error
 ENOUGH = 5  # to be expected, where none has been seen, for something to be compared

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.enskog import fluid_note, pair_rate, root_of_temperature
+from mesokit.seam.engine import CollidingSpheres
 from mesokit.seam.estimate import of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.engine import CollidingSpheres
 
 FINE = 256  # bins in which an engine counts
 DILUTE = 0.0025  # packing fraction above which the last partner is in the way of others for long

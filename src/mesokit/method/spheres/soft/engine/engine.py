@@ -1,26 +1,22 @@
 """The engine of soft spheres, as a simulation and its observables know it."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.moments import moments
+from mesokit.method.spheres.common.start.protocol import Started
 from mesokit.method.spheres.soft.engine import groups
 from mesokit.method.spheres.soft.engine.system import System
 from mesokit.method.spheres.soft.laws import given_of, surfaces_of
 from mesokit.method.spheres.soft.scales import timestep_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.start.protocol import Started
-    from mesokit.seam.engine import Array, Integers, State
+from mesokit.seam.engine import Array, Integers, State
 
 UNSTABLE = 1000.0  # times the kT of a bath: no motion that a bath slows is so hot
 

@@ -1,19 +1,15 @@
 """The memory of a halo of beads, and the reach of solutes beyond a block."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.domains.beads.halo import Halo
 from mesokit.method.mpcd.engine.domains.messages.mpi import post
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.potential.thermal import mean_square
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-    from mesokit.method.mpcd.solutes import Solutes
 
 FAST = 9.0  # thermal speeds: no bead is faster
 WIDE = 3.5  # root-mean-square lengths: no bond that has no longest one is longer
