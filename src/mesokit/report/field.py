@@ -8,10 +8,11 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.observe.flow_frames import average
 from mesokit.report.caption import symbols
-from mesokit.report.flow import density, quiver, speed
+from mesokit.report.flow import quiver
 from mesokit.report.flow.data import Flow
-from mesokit.report.flow.field_source import FieldSource
 from mesokit.report.flow.kinds import Panel
+from mesokit.report.flow.map_sources import FieldSource
+from mesokit.report.flow.maps import density, speed
 from mesokit.report.flow.noise import note, smooth, smoothing
 from mesokit.report.flow.region import region_of
 from mesokit.report.flow.setting import Setting
