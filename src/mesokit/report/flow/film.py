@@ -24,10 +24,9 @@ from mesokit.report.flow.colouring import in_film
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
 from mesokit.report.flow.noise import averaged, note, smooth, smoothing
-from mesokit.report.flow.region import Region, frames_in, region_of
+from mesokit.report.flow.region import Region, View, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, Source, choose_one, sources
-from mesokit.report.flow.view import View
 from mesokit.report.progress import FilmReporter, Reporter
 from mesokit.seam.in_units import of_case
 

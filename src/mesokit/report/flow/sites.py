@@ -11,17 +11,16 @@ from numpy.typing import NDArray
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.report.flow.data import Flow
-from mesokit.report.flow.heat_map import heat_map
 from mesokit.report.flow.region import Region
-from mesokit.report.flow.scale import Scale
+from mesokit.report.flow.scale import Scale, heat_map
 from mesokit.report.flow.setting import Setting
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.case.trajectory import Group
     from mesokit.io.trajectory_reader import TrajectoryReader
+    from mesokit.report.flow.region import View
     from mesokit.report.flow.state import State
-    from mesokit.report.flow.view import View
 
 NEEDS = "sites"
 TITLE = "sites"

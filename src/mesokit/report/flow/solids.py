@@ -25,12 +25,6 @@ BEYOND = 0.02, 0.08  # of the longer and the shorter side: the strip of a plate 
 FILL, EDGE, HATCH = "0.85", "black", "////"
 
 
-def solids_of(case: Case) -> Solids | None:
-    """What says where the solids of a case are, None without any."""
-    solids: Solids | None = method_of(case).enclosure.solids(case)
-    return solids
-
-
 class Section:
     """The plane of a picture: two axes of the box, and a place `at` along the third.
 
@@ -40,10 +34,10 @@ class Section:
     third: int | None = None
 
     def __init__(self, case: Case | None, axes: tuple[str, str], at: float | None = None) -> None:
-        self.solids = None
+        self.solids: Solids | None = None
         if case is None:
             return
-        self.case, self.solids = case, solids_of(case)
+        self.case, self.solids = case, method_of(case).enclosure.solids(case)
         self.columns = [case.box.axes.index(axis) for axis in axes]
         self.third = next((k for k in range(case.box.dimension) if k not in self.columns), None)
         if self.third is None:
@@ -79,17 +73,16 @@ class Section:
         return found.reshape(x.shape)
 
     def closed(self) -> tuple[bool, bool]:
-        """Whether a solid closes the box along each axis: there is nothing else beyond its end."""
-        return self._closed(0), self._closed(1)
-
-    def _closed(self, axis: int) -> bool:
+        """Whether a solid closes the box along each axis: all beyond its end is solid."""
         if self.solids is None:
-            return False
-        length = self.case.box.size[self.columns[1 - axis]]
-        along = np.linspace(0, length, 2 * math.ceil(length) + 1)
-        beyond = np.full_like(along, -0.25)
-        x, y = (beyond, along) if axis == 0 else (along, beyond)
-        return bool((self.distance(x, y) < 0).all())
+            return False, False
+        found = []
+        for axis in range(2):
+            length = self.case.box.size[self.columns[1 - axis]]
+            along = np.linspace(0, length, 2 * math.ceil(length) + 1)
+            x, y = (np.full_like(along, -0.25), along)[:: 1 - 2 * axis]
+            found.append(bool((self.distance(x, y) < 0).all()))
+        return found[0], found[1]
 
     def view(self, region: Region) -> Region:
         """The region, and a strip of each plate that it touches."""
