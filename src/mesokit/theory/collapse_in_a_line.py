@@ -1,4 +1,4 @@
-"""Below which restitution spheres in a line collapse."""
+"""Restitution below which spheres in a line collapse."""
 
 import math
 
@@ -10,20 +10,11 @@ def collapse_restitution(spheres: int, wall: bool = True) -> float:
     moves as if on a wall; of three free ones 7 - 4 sqrt(3) (McNamara and Young 1992). The law of
     many is that of the motion in which all collide in turn; of other starts some collapse above.
 
-    Parameters
-    ----------
-    spheres : int
-        How many: from 2 on a wall; 3, or an even number from 4, without.
-    wall : bool
-        Whether they collide with a wall that has the same restitution.
+    Parameters: `spheres` their number, on a wall from 2, without 3 or an even number from 4; `wall`
+    whether they collide with a wall that has the same restitution.
 
-    Raises
-    ------
-    ValueError
-        For a number whose law is not known.
+    Raises ValueError for a number whose law is not known.
 
-    Examples
-    --------
     >>> [round(collapse_restitution(n), 4) for n in (2, 3, 4, 8, 16)]
     [0.1716, 0.3333, 0.4465, 0.6735, 0.8215]
     >>> round(collapse_restitution(3, wall=False), 4)

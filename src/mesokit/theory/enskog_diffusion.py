@@ -14,21 +14,10 @@ def enskog_diffusion(
     Backflow makes it larger at medium densities (1.24 times at n = 0.5 in 3D), cages make it
     smaller near freezing; of disks it grows with the logarithm of time and size.
 
-    Parameters
-    ----------
-    density : float
-        Number per area or volume, in 1/a^d.
-    diameter : float
-        In a.
-    kT_over_m : float
-        Thermal energy over mass, in (a/time)^2.
-    contact : float
-        Pair distribution at contact, such as `contact_value` gives.
-    dimension : int
-        2 or 3.
+    Parameters: `density` number per area or volume, in 1/a^d; `diameter` in a; `kT_over_m` thermal
+    energy over mass, in (a/time)^2; `contact` pair distribution at contact, such as `contact_value`
+    gives; `dimension` 2 or 3.
 
-    Examples
-    --------
     A fluid of spheres of n = 0.5, which fill 0.2618 of the volume.
 
     >>> from mesokit.theory import contact_value

@@ -1,4 +1,4 @@
-"""How often hard disks and spheres collide (Enskog)."""
+"""Collision rate of hard disks and spheres (Enskog)."""
 
 import math
 
@@ -9,15 +9,8 @@ def contact_value(packing_fraction: float, dimension: int) -> float:
     Disks after Henderson (1975), spheres after Carnahan and Starling (1969); the disks' is 0.2 %
     too high at 0.4 and 1.2 % at 0.6.
 
-    Parameters
-    ----------
-    packing_fraction : float
-        Part of the area or volume that they fill.
-    dimension : int
-        2 or 3.
+    Parameters: `packing_fraction` part of the area or volume that they fill; `dimension` 2 or 3.
 
-    Examples
-    --------
     >>> round(contact_value(0.5, 2), 4), round(contact_value(0.3, 3), 4)
     (3.125, 2.4781)
     """
@@ -32,19 +25,9 @@ def enskog_rate(
 ) -> float:
     """Collisions of a sphere per time in equilibrium.
 
-    Parameters
-    ----------
-    density : float
-        Number per area or volume, in 1/a^d.
-    diameter : float
-        In a.
-    kT_over_m : float
-        Thermal energy over mass, in (a/time)^2.
-    packing_fraction, dimension
-        As in `contact_value`.
+    Parameters: `density` number per area or volume, in 1/a^d; `diameter` in a; `kT_over_m` thermal
+    energy over mass, in (a/time)^2; `packing_fraction`, `dimension` as in `contact_value`.
 
-    Examples
-    --------
     Disks that fill a fifth of the area.
 
     >>> import math

@@ -1,4 +1,4 @@
-"""How far the velocities of a granular gas are from Maxwell's."""
+"""Deviation of the velocities of a granular gas from Maxwell's."""
 
 
 def fourth_cumulant(restitution: float, dimension: int, heated: bool = False) -> float:
@@ -7,17 +7,9 @@ def fourth_cumulant(restitution: float, dimension: int, heated: bool = False) ->
     To first order in a_2 in a dilute uniform gas: cooling freely, or held by random kicks (van
     Noije and Ernst 1998).
 
-    Parameters
-    ----------
-    restitution : float
-        Coefficient e, constant.
-    dimension : int
-        2 or 3.
-    heated : bool
-        Whether random kicks (white noise) give back what collisions take.
+    Parameters: `restitution` coefficient e, constant; `dimension` 2 or 3; `heated` whether random
+    kicks (white noise) give back what collisions take.
 
-    Examples
-    --------
     >>> round(fourth_cumulant(0.5, 3), 5), round(fourth_cumulant(0.5, 3, heated=True), 5)
     (0.05246, 0.0256)
     >>> round(fourth_cumulant(0.9, 2), 5)

@@ -1,4 +1,4 @@
-"""How a gas of inelastic hard spheres cools (Haff 1983)."""
+"""Cooling of a gas of inelastic hard spheres (Haff 1983)."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -7,17 +7,9 @@ from numpy.typing import ArrayLike, NDArray
 def haff_time(restitution: float, rate: float, dimension: int) -> float:
     """The time of Haff's law: t_H = 2 d/((1 - e^2) rate).
 
-    Parameters
-    ----------
-    restitution : float
-        Coefficient e of smooth spheres, below 1.
-    rate : float
-        Collisions of a sphere per time at the start.
-    dimension : int
-        2 or 3.
+    Parameters: `restitution` coefficient e of smooth spheres, below 1; `rate` collisions of a
+    sphere per time at the start; `dimension` 2 or 3.
 
-    Examples
-    --------
     >>> from mesokit.theory import enskog_rate
     >>> import math
     >>> round(haff_time(0.9, enskog_rate(0.4 / math.pi, 1.0, 1.0, 0.1, 2), 2), 2)
@@ -29,8 +21,6 @@ def haff_time(restitution: float, rate: float, dimension: int) -> float:
 def haff_temperature(time: ArrayLike, haff: float) -> NDArray[np.float64]:
     """Temperature over that of the start, (1 + t/t_H)^-2, as long as the gas is uniform.
 
-    Examples
-    --------
     >>> haff_temperature([0.0, 1.0], 1.0)
     array([1.  , 0.25])
     """

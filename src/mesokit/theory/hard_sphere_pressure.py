@@ -14,15 +14,8 @@ def compressibility(packing_fraction: float, dimension: int) -> float:
     the last two, good to 0.1 % below a packing fraction of 0.5 and 1 % at 0.6. Spheres: Kolafa
     (Boublik and Nezbeda 1986, eq. 4.46).
 
-    Parameters
-    ----------
-    packing_fraction : float
-        Part of the area or volume that they fill.
-    dimension : int
-        2 or 3.
+    Parameters: `packing_fraction` part of the area or volume that they fill; `dimension` 2 or 3.
 
-    Examples
-    --------
     >>> round(compressibility(0.3, 3), 4), round(compressibility(0.4, 2), 4)
     (3.9843, 2.8294)
     """
@@ -41,17 +34,9 @@ def compressibility_of_few(law: Callable[[float], float], packing_fraction: floa
     In a box of few the number around a sphere cannot fluctuate: Z falls by
     (phi/2n) d ln(d(phi Z)/dphi)/dphi (Lebowitz and Percus 1961).
 
-    Parameters
-    ----------
-    law : function
-        Z of many, by the packing fraction.
-    packing_fraction : float
-        Part of the area or volume that they fill.
-    n : int
-        Number of spheres.
+    Parameters: `law` Z of many, by the packing fraction; `packing_fraction` part of the area or
+    volume that they fill; `n` number of spheres.
 
-    Examples
-    --------
     >>> few = compressibility_of_few(lambda phi: compressibility(phi, 3), 0.16, 12)
     >>> round(few, 3), round(compressibility(0.16, 3), 3)
     (1.944, 1.995)

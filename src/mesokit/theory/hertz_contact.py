@@ -17,13 +17,9 @@ class Press(NamedTuple):
 def hertz_contact(stiffness: float, mass: float, speed: float) -> Press:
     """Largest overlap x = (5 m v^2/4k)^(2/5) and duration 2.943275 x/v, with the force k x^(3/2).
 
-    Parameters
-    ----------
-    stiffness, mass, speed : float
-        k, the reduced mass, and the normal velocity before the collision.
+    Parameters: `stiffness`, `mass`, `speed` k, the reduced mass, and the normal velocity before the
+    collision.
 
-    Examples
-    --------
     >>> found = hertz_contact(1e5, 0.5, 1.0)
     >>> round(found.overlap, 8), round(found.time / found.overlap, 6)
     (0.00828614, 2.943275)

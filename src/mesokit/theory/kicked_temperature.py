@@ -10,17 +10,10 @@ def kicked_temperature(power: float, restitution: float, unit_rate: float) -> fl
     spheres move together counts as temperature and is not lost in collisions. At e = 0.8 and a
     packing fraction of 0.2 some 400 disks are 5 % hotter than this, 1,600 are 6 %, 25 are 1 %.
 
-    Parameters
-    ----------
-    power : float
-        Energy that a sphere gets per time.
-    restitution : float
-        Coefficient e of smooth spheres, below 1.
-    unit_rate : float
-        Collisions of a sphere per time at kT = 1, such as `enskog_rate` gives.
+    Parameters: `power` energy that a sphere gets per time; `restitution` coefficient e of smooth
+    spheres, below 1; `unit_rate` collisions of a sphere per time at kT = 1, such as `enskog_rate`
+    gives.
 
-    Examples
-    --------
     >>> round(kicked_temperature(0.0627, 0.95, 1.2871), 4)
     0.9995
     """

@@ -1,4 +1,4 @@
-"""What the cut-off of a Lennard-Jones fluid leaves out."""
+"""Energy and pressure of a Lennard-Jones fluid beyond its cut-off."""
 
 import math
 from typing import NamedTuple
@@ -17,15 +17,9 @@ def lennard_jones_tail(density: float, cutoff: float) -> LennardJonesTail:
     """Energy and pressure beyond the cut-off in 3D, where g(r) = 1 (Frenkel and Smit 2002,
     section 3.2.2), in units of epsilon and sigma.
 
-    Parameters
-    ----------
-    density : float
-        Particles per volume.
-    cutoff : float
-        Distance beyond which there is no force; the energy is not shifted.
+    Parameters: `density` particles per volume; `cutoff` distance beyond which there is no force;
+    the energy is not shifted.
 
-    Examples
-    --------
     >>> tail = lennard_jones_tail(0.8, 3.0)
     >>> round(tail.energy, 5), round(tail.pressure, 5)
     (-0.24811, -0.3968)

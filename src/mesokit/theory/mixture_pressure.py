@@ -13,17 +13,9 @@ def mixture_compressibility(
     Disks after Santos, Yuste and Lopez de Haro (1999), from the equation of state of equal disks;
     spheres after Boublik (1970) and Mansoori, Carnahan, Starling and Leland (1971).
 
-    Parameters
-    ----------
-    packing_fraction : float
-        Part of the area or volume that they fill.
-    moments : sequence of float
-        Means of the diameter, its square and, in 3D, its cube; in a, a^2, a^3.
-    dimension : int
-        2 or 3.
+    Parameters: `packing_fraction` part of the area or volume that they fill; `moments` means of the
+    diameter, its square and, in 3D, its cube; in a, a^2, a^3; `dimension` 2 or 3.
 
-    Examples
-    --------
     Half of diameter 1, half of 0.6.
 
     >>> round(mixture_compressibility(0.4, (0.8, 0.68, 0.608), 3), 3)

@@ -10,19 +10,9 @@ def second_virial(
 ) -> float:
     """B_2 = -1/2 integral of (exp(-U/kT) - 1): P = n kT (1 + B_2 n) of a dilute gas.
 
-    Parameters
-    ----------
-    energy : function
-        U of a distance; 0 beyond the cutoff.
-    kT : float
-        Thermal energy, in units of U.
-    cutoff : float
-        Longest distance at which U is not 0, in a.
-    dimension : int
-        2 or 3.
+    Parameters: `energy` U of a distance; 0 beyond the cutoff; `kT` thermal energy, in units of U;
+    `cutoff` longest distance at which U is not 0, in a; `dimension` 2 or 3.
 
-    Examples
-    --------
     Lennard-Jones, whose second virial coefficient vanishes at a temperature of 3.418.
 
     >>> def energy(r):

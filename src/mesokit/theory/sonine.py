@@ -18,15 +18,9 @@ def sonine_component_cdf(velocity: ArrayLike, cumulant: float) -> Array:
 
     Its density is Maxwell's times 1 + a_2 (u^4 - 6 u^2 + 3)/8 (van Noije and Ernst 1998).
 
-    Parameters
-    ----------
-    velocity : array_like
-        Component u over sqrt(kT/m).
-    cumulant : float
-        Fourth cumulant a_2, small against 1.
+    Parameters: `velocity` component u over sqrt(kT/m); `cumulant` fourth cumulant a_2, small
+    against 1.
 
-    Examples
-    --------
     >>> [round(float(sonine_component_cdf(1.0, cumulant)), 6) for cumulant in (0.0, 0.1)]
     [0.841345, 0.847394]
     """
@@ -41,17 +35,9 @@ def sonine_speed_cdf(speed: ArrayLike, dimension: int, cumulant: float) -> Array
     The density of velocities is Maxwell's times 1 + a_2 S(u^2/2), with the Sonine polynomial
     S(x) = x^2/2 - (d + 2) x/2 + d (d + 2)/8 (van Noije and Ernst 1998).
 
-    Parameters
-    ----------
-    speed : array_like
-        Speed u over sqrt(kT/m).
-    dimension : int
-        d, 2 or 3.
-    cumulant : float
-        Fourth cumulant a_2, small against 1.
+    Parameters: `speed` u over sqrt(kT/m); `dimension` d, 2 or 3; `cumulant` fourth cumulant
+    a_2, small against 1.
 
-    Examples
-    --------
     >>> [round(float(sonine_speed_cdf(1.0, 3, cumulant)), 6) for cumulant in (0.0, 0.1)]
     [0.198748, 0.222945]
     """

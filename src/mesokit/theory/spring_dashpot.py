@@ -19,17 +19,9 @@ def spring_dashpot(stiffness: float, damping: float, mass: float, pulls: bool = 
     w^2 - b^2))/w, and, overdamped with W^2 = b^2 - k/m, t = log((b + W)/(b - W))/W; e = exp(-b t)
     (Schwager and Poschel, Granular Matter 9, 465, 2007).
 
-    Parameters
-    ----------
-    stiffness, damping : float
-        k and g.
-    mass : float
-        Reduced mass.
-    pulls : bool
-        Whether the force may pull at the end.
+    Parameters: `stiffness`, `damping` k and g; `mass` reduced mass; `pulls` whether the force may
+    pull at the end.
 
-    Examples
-    --------
     >>> e, t = spring_dashpot(1e5, 20.0, 0.5)
     >>> round(e, 6), round(t, 8)
     (0.868805, 0.00703185)

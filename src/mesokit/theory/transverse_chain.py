@@ -92,8 +92,11 @@ def transverse_correlation_chain(
         if np.abs(residues).max() < MEETING:
             result[here] = (np.exp(t[here][:, None] * poles) @ residues).real
         else:
+            # slower, but without the residues of two poles that meet
+            from scipy.linalg import expm
+
             matrix = _arrow(float(wave), viscosity, elasticity, stress_times)
-            result[here] = _exponential(matrix, t[here])
+            result[here] = [expm(matrix * delay)[0, 0] for delay in t[here]]
     return result
 
 
@@ -105,13 +108,6 @@ def _arrow(k: float, viscosity: float, elasticity: float, stress_times: ArrayLik
     matrix[0, 1:] = -k * np.sqrt(elasticity * count)
     matrix[1:, 0] = k * np.sqrt(elasticity * count)
     return matrix
-
-
-def _exponential(matrix: Array, time: Array) -> Array:
-    """[exp(A t)]_00 without eigenvalues: slower, but nothing happens where two of them meet."""
-    from scipy.linalg import expm
-
-    return np.array([expm(matrix * t)[0, 0] for t in time])
 
 
 def _distinct(tau: Array) -> tuple[Array, Array]:
