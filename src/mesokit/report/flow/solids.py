@@ -25,6 +25,11 @@ BEYOND = 0.02, 0.08  # of the longer and the shorter side: the strip of a plate 
 FILL, EDGE, HATCH = "0.85", "black", "////"
 
 
+def solids_of(case: Case) -> Solids | None:
+    found: Solids | None = method_of(case).enclosure.solids(case)
+    return found
+
+
 class Section:
     """The plane of a picture: two axes of the box, and a place `at` along the third.
 
@@ -37,7 +42,7 @@ class Section:
         self.solids: Solids | None = None
         if case is None:
             return
-        self.case, self.solids = case, method_of(case).enclosure.solids(case)
+        self.case, self.solids = case, solids_of(case)
         self.columns = [case.box.axes.index(axis) for axis in axes]
         self.third = next((k for k in range(case.box.dimension) if k not in self.columns), None)
         if self.third is None:
