@@ -8,6 +8,7 @@ from mesokit.statistics.blocking import (
     correlated_error,
     falling_error,
     independent_error,
+    student,
 )
 from mesokit.statistics.blocks import Blocks
 from mesokit.statistics.fit import (
@@ -29,7 +30,6 @@ from mesokit.statistics.spectrum import (
     mean_spectrum,
     spectrum,
 )
-from mesokit.statistics.student import student
 from mesokit.statistics.tally import Tally
 from mesokit.statistics.time_series import TimeSeries
 

@@ -103,15 +103,12 @@ def transverse_correlation_chain(
 def _arrow(k: float, viscosity: float, elasticity: float, stress_times: ArrayLike) -> Array:
     """The matrix A of `transverse_poles`."""
     positive(viscosity=viscosity, elasticity=elasticity)
-    tau, count = _distinct(checked_times(elasticity, stress_times))
+    tau = np.sort(checked_times(elasticity, stress_times))[::-1]
+    # times that differ, and how often each is there: those of a ring come in pairs
+    start = np.append(True, tau[1:] < tau[:-1] * (1 - 1e-12))
+    count = np.diff(np.append(np.flatnonzero(start), len(tau))).astype(float)
+    tau = tau[start]
     matrix = -np.diag(np.append(viscosity * k * k, 1 / tau))
     matrix[0, 1:] = -k * np.sqrt(elasticity * count)
     matrix[1:, 0] = k * np.sqrt(elasticity * count)
     return matrix
-
-
-def _distinct(tau: Array) -> tuple[Array, Array]:
-    """Times that differ, and how often each is there (those of a ring come in pairs)."""
-    tau = np.sort(tau)[::-1]
-    start = np.append(True, tau[1:] < tau[:-1] * (1 - 1e-12))
-    return tau[start], np.diff(np.append(np.flatnonzero(start), len(tau))).astype(float)

@@ -135,6 +135,7 @@ def draw(ax: Any, beads: Beads, region: Region) -> None:
     In 3D those at the back come first, and are paler.
     """
     from matplotlib.collections import LineCollection
+    from matplotlib.colors import to_rgb
 
     points, only = points_of(ax), not beads.names
     layers = np.minimum((beads.nearness * LAYERS).astype(int), LAYERS - 1)
@@ -146,19 +147,13 @@ def draw(ax: Any, beads: Beads, region: Region) -> None:
         for group in np.unique(groups, axis=0):  # from the back to the front
             layer, kind, molecule = (int(number) for number in group)
             colour, marker = look(kind, molecule, only)
-            colour = _paler(colour, PALE * (1 - (layer + 1) / LAYERS))
+            part = PALE * (1 - (layer + 1) / LAYERS)  # of white
+            shade = tuple(x + (1 - x) * part for x in to_rgb(colour)) if part > 0 else colour
             chosen = (groups == group).all(axis=1)
             own, size = inside & chosen, max(SMALLEST, float(beads.diameters[kind]) * points)
             bonds = list(places[ends[chosen[ends[:, 0]]]])
-            lines = LineCollection(bonds, colors=colour, linewidths=BOND * size, zorder=ABOVE)
+            lines = LineCollection(bonds, colors=shade, linewidths=BOND * size, zorder=ABOVE)
             ax.add_collection(lines, autolim=False)
-            style: Any = {"color": colour, "ms": size, "mec": "white"}
+            style: Any = {"color": shade, "ms": size, "mec": "white"}
             rim = min(EDGE * size / 2, RIM)
             ax.plot(*places[own].T, marker, mew=rim, zorder=ABOVE, **style)
-
-
-def _paler(colour: str, part: float) -> Any:
-    """The colour with a part of it replaced by white."""
-    from matplotlib.colors import to_rgb
-
-    return colour if part <= 0 else tuple(x + (1 - x) * part for x in to_rgb(colour))

@@ -23,7 +23,7 @@ class Map:
 
     NEEDS: str
     TITLE: str
-    values: Callable[[Flow], Array]
+    values: Callable[[Flow], Any]
     scale: Callable[[Flow, float], Scale]
 
     def reach(self, flow: Flow, region: Region) -> float:
@@ -56,12 +56,6 @@ def speed_label(flow: Flow) -> str:
     return labelled("speed" if flow.dimension == 2 else "speed in the plane", "a/tau")
 
 
-def density_of(flow: Flow) -> Array:
-    """Particles per cell (nx, ny)."""
-    assert flow.density is not None
-    return flow.density
-
-
 def vorticity_of(flow: Flow) -> Array:
     """Change of the second component along the first axis less that of the first along the second.
 
@@ -90,11 +84,14 @@ def _vorticity_scale(flow: Flow, reach: float) -> Scale:
     return Scale(-reach, reach, "RdBu_r", labelled(label, "1/tau"))
 
 
-def _density_scale(flow: Flow, reach: float) -> Scale:
-    return Scale(flow.lowest, reach, "cividis", labelled("density", f"1/a^{flow.dimension}"))
-
-
-density = Map("density", "occupancy", density_of, _density_scale)
+density = Map(
+    "density",
+    "occupancy",
+    lambda flow: flow.density,
+    lambda flow, reach: Scale(
+        flow.lowest, reach, "cividis", labelled("density", f"1/a^{flow.dimension}")
+    ),
+)
 speed = Map(
     "velocity",
     "speed",
