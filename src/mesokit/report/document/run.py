@@ -55,20 +55,12 @@ def write_report(files: Files, path: str | Path | None = None, films: bool = Fal
 
     Parameters
     ----------
-    files : RunFiles
-        Of the run.
-    path : path, optional
-        The file to write, `report.html` in the folder of the run unless said.
-    films : bool, optional
-        Put small films of the folder into the page, which is then larger; else they are linked.
+    files: of the run.
+    path: the file to write, `report.html` in the folder of the run unless said.
+    films: put small films of the folder into the page, which is then larger; else they are linked.
 
-    Raises
-    ------
-    RunError
-        If the file cannot be written, or the data of the run are damaged.
+    Raises RunError if the file cannot be written, or the data of the run are damaged.
 
-    Examples
-    --------
     >>> import tempfile, mesokit
     >>> from mesokit import Box, Conservation, Run, Simulation
     >>> folder = Path(tempfile.mkdtemp()) / "run"

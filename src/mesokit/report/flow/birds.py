@@ -43,24 +43,12 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     unit = headings / np.where(size > 0, size, 1.0)
     turned = np.arctan2(unit[:, 1], unit[:, 0]) / np.pi
     width = SLIM * long
-    ax.quiver(
-        *places.T,
-        *long * unit.T,
-        color=scale(flow, reach).mappable().to_rgba(turned),
-        angles="xy",
-        scale_units="inches",
-        scale=1.0,
-        units="inches",
-        width=0.2 * width,
-        headwidth=5.0,
-        headlength=long / (0.2 * width),
-        headaxislength=0.8 * long / (0.2 * width),
-        minlength=0.0,
-        minshaft=1.0,
-        pivot="mid",
-        rasterized=len(places) > MANY,
-        zorder=2,
-    )
+    units = {"angles": "xy", "scale_units": "inches", "scale": 1.0, "units": "inches"}
+    shaft = {"width": 0.2 * width, "minlength": 0.0, "minshaft": 1.0, "pivot": "mid"}
+    head = {"headlength": long / (0.2 * width), "headaxislength": 0.8 * long / (0.2 * width)}
+    look = {"color": scale(flow, reach).mappable().to_rgba(turned), "zorder": 2}
+    look |= {"headwidth": 5.0, "rasterized": len(places) > MANY}
+    ax.quiver(*places.T, *long * unit.T, **units, **shaft, **head, **look)
 
 
 @functools.cache

@@ -1,26 +1,21 @@
 """States of the sites of a lattice as colours."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
+from mesokit.case.trajectory import Group
 from mesokit.errors import CaseError
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.flow.data import Flow
-from mesokit.report.flow.region import Region
+from mesokit.report.flow.region import Region, View
 from mesokit.report.flow.scale import Scale, heat_map
 from mesokit.report.flow.setting import Setting
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.case.trajectory import Group
-    from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.report.flow.region import View
-    from mesokit.report.flow.state import State
+from mesokit.report.flow.state import State
 
 NEEDS = "sites"
 TITLE = "sites"
