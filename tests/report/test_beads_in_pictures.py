@@ -12,8 +12,8 @@ from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.report.flow import animate, picture, usual
 from mesokit.report.flow.beads import BeadFrames, look
-from mesokit.report.flow.fluid_bonds import FluidBonds
 from mesokit.report.flow.source import sources
+from mesokit.report.flow.trajectory_source import FluidBonds
 from mesokit.report.style import COLOURS
 from tests.helpers.known_flows import MAPS, results_of
 from tests.helpers.small_fluids import make_case

@@ -75,7 +75,7 @@ def test_a_window_and_a_region_of_it(run, tmp_path):
 
 
 def test_all_pictures_have_the_same_colours(run, tmp_path, monkeypatch):
-    from mesokit.report.flow import speed
+    from mesokit.report.flow.maps import speed
 
     reaches = []
     draw = speed.draw

@@ -15,15 +15,14 @@ from mesokit.io import h5md
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report import save_figure
-from mesokit.report.flow import KINDS, picture, quiver, solids, speed
-from mesokit.report.flow import vorticity as turning
+from mesokit.report.flow import KINDS, picture, quiver, solids
 from mesokit.report.flow.data import Flow
+from mesokit.report.flow.maps import speed, vorticity, vorticity_of
 from mesokit.report.flow.noise import averaged, smooth, smoothing
 from mesokit.report.flow.quiver import arrows
 from mesokit.report.flow.region import Region, region_of
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.source import sources
-from mesokit.report.flow.vorticity import vorticity
 from tests.helpers.fake_fluid import FakeFluid
 from tests.helpers.known_flows import FRAMES, MAPS, SPIN, Disk, results_of
 
@@ -59,24 +58,24 @@ class TestNumbers:
         source = sources(case, results, None)[0]
         flow = source.flow(np.arange(len(source.time)))
         flow = Flow(flow.axes, flow.size, 2, (False, False), velocity=flow.velocity)
-        assert abs(vorticity(flow) - 2 * SPIN).max() < 0.1 * SPIN
+        assert abs(vorticity_of(flow) - 2 * SPIN).max() < 0.1 * SPIN
 
     @pytest.mark.parametrize("shape", [(12, 10), (24, 30)])
     def test_vorticity_of_a_linear_flow_is_exact(self, shape):
         flow = exact(shape, lambda x, y: (-SPIN * y + 0.1 * x, SPIN * x - 0.1 * y))
-        np.testing.assert_allclose(vorticity(flow), 2 * SPIN)
+        np.testing.assert_allclose(vorticity_of(flow), 2 * SPIN)
 
     def test_vorticity_goes_on_across_a_periodic_box(self):
         k = 2 * np.pi / 12
         flow = exact((48, 10), lambda x, y: (0 * x, np.sin(k * x)), periodic=(True, True))
         x = (np.arange(48) + 0.5) / 4
         expected = k * np.cos(k * x)[:, None] * np.ones(10)
-        np.testing.assert_allclose(vorticity(flow), expected, atol=0.003 * k)
+        np.testing.assert_allclose(vorticity_of(flow), expected, atol=0.003 * k)
 
     def test_no_vorticity_in_and_next_to_bins_without_fluid(self):
         flow = exact((12, 10), lambda x, y: (-y, x))
         flow.velocity[5, 5] = np.nan
-        missing = np.isnan(vorticity(flow))
+        missing = np.isnan(vorticity_of(flow))
         assert np.argwhere(missing).tolist() == [[4, 5], [5, 4], [5, 5], [5, 6], [6, 5]]
 
     @pytest.mark.parametrize("cells", [2, 8])
@@ -173,19 +172,19 @@ class TestNoise:
 
     def test_a_clear_flow_stays_as_it_is(self):
         flow = self.noisy(20, 0.001)
-        for panel in (turning, speed, quiver):
+        for panel in (vorticity, speed, quiver):
             assert smoothing([panel], [flow], Region((0.0, 0.0), flow.size)) == (0.0, True)
 
     def test_a_noisy_one_is_smoothed(self):
         flow = self.noisy(20, 0.3)
         region = Region((0.0, 0.0), flow.size)
-        width, clear = smoothing([turning], [flow], region)
+        width, clear = smoothing([vorticity], [flow], region)
         assert clear and 0 < width <= 3
         y = np.arange(40) + 0.5
         expected = -2 * np.pi / 20 * np.cos(2 * np.pi * y / 20)
-        found = vorticity(smooth(flow, width))[8:40, 5:35]
+        found = vorticity_of(smooth(flow, width))[8:40, 5:35]
         assert np.std(found - expected[5:35]) < 0.5 * np.std(expected)
-        assert np.std(vorticity(flow)[8:40, 5:35] - expected[5:35]) > np.std(expected)
+        assert np.std(vorticity_of(flow)[8:40, 5:35] - expected[5:35]) > np.std(expected)
 
     def test_so_is_a_map_of_its_speed(self):
         flow = self.noisy(20, 0.6)

@@ -15,7 +15,7 @@ from mesokit import Study
 from mesokit.cli import main
 from mesokit.errors import CaseError, RunError
 from mesokit.io.run_directory import RunDirectory
-from mesokit.report.document.links import link_to
+from mesokit.report.document.pictures import link_to
 from mesokit.report.progress import Reporter
 from mesokit.report.table import cells
 from mesokit.study import document

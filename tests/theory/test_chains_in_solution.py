@@ -20,7 +20,7 @@ from mesokit.theory import (
     zimm_diffusion,
     zimm_times,
 )
-from mesokit.theory.diffusion_in_box import CUBIC
+from mesokit.theory.finite_size import CUBIC
 
 ETA = 8.7
 DRAINING = 6 * np.pi * ETA * 1e-6  # friction of beads that drag no fluid along

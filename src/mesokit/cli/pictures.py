@@ -188,8 +188,8 @@ def _require_one(kind: str | None, name: str | None, output: Path | None, given:
 def _usual(files: RunFiles, first: str, choices: Any, in_time: bool) -> str:
     """The kind of picture that a run has kept enough for."""
     from mesokit.report.flow import usual
+    from mesokit.report.flow.region import View
     from mesokit.report.flow.source import sources
-    from mesokit.report.flow.view import View
 
     found = sources(files.case, files.results, files.trajectory, View(**choices))
     return usual(files.case, found, first, in_time)

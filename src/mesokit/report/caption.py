@@ -1,4 +1,4 @@
-"""Captions: what was compared, in words and formulas, below a figure."""
+"""Captions: comparisons in words and formulas, below a figure."""
 
 import re
 import textwrap
@@ -59,13 +59,9 @@ def symbols(unit: str) -> str:
     if unit in _SYMBOLS:
         return f"${_SYMBOLS[unit]}$"
     if _NAMED.fullmatch(unit):
-        return f"${_WORD.sub(_upright, unit)}$"
+        upright = _WORD.sub(lambda w: rf"\mathrm{{{w[1]}}}" + r"\," * bool(w[2]), unit)
+        return f"${upright}$"
     return mathematics(unit)
-
-
-def _upright(word: re.Match[str]) -> str:
-    """A word of a unit, and the space after it, in a formula."""
-    return rf"\mathrm{{{word[1]}}}" + r"\," * bool(word[2])
 
 
 def rounded(value: float, digits: int = 4) -> str:
@@ -93,7 +89,7 @@ def at(time: float, digits: int = 4, name: str = "t = ") -> str:
 
 
 def in_cells() -> str:
-    """What stands after a length in a formula: the side of a cell, or nothing without cells."""
+    """The unit of a length in a formula: the side of a cell, or nothing without cells."""
     return r"\,a" * (shown() == CELLS)
 
 
@@ -105,18 +101,10 @@ def mathematics(text: str) -> str:
     >>> print(mathematics("Rouse, exp(-t/tau_p)"))
     Rouse, $e^{-t/\\tau_p}$
     """
-    parts = re.split(r"(\$[^$]*\$)", text)  # what is a formula already stays
     for formula, sign in _FORMULAS:
-        parts = [
-            piece
-            for part in parts
-            for piece in (
-                [part]
-                if part.startswith("$")
-                else re.split(r"(\$[^$]*\$)", re.sub(formula, sign, part))
-            )
-        ]
-    return "".join(parts)
+        parts = re.split(r"(\$[^$]*\$)", text)  # formulas that are set already stay
+        text = "".join(p if p.startswith("$") else re.sub(formula, sign, p) for p in parts)
+    return text
 
 
 def unbroken(text: str) -> str:
@@ -131,7 +119,7 @@ def unbroken(text: str) -> str:
 def compared(comparisons: Iterable[Comparison], width: float) -> str:
     """Lines that fit into so many inches: measured with error, theory, deviation, and cautions.
 
-    What several lines would say of their theory is said once, below them.
+    A long caution of several lines is written once, below them.
     """
     found = list(comparisons)
     notes = Counter(filter(None, map(_caution, found[:MOST])))
@@ -149,7 +137,7 @@ def _wrapped(text: str, width: float) -> list[str]:
 
 
 def _caution(c: Comparison) -> str:
-    """What must be known to read a deviation, or why there is none."""
+    """The note of a comparison that qualifies its deviation, or explains why there is none."""
     unknown = c.measured != c.measured or c.expected != c.expected
     if unknown or c.approximate or not c.steady or c.lower_bound:
         return c.note

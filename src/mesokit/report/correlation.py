@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mesokit.report.caption import mathematics, symbols
 from mesokit.report.finish.legend import legend_above
-from mesokit.report.style import COLOURS, MARKERS, labelled, sparse_logarithm
+from mesokit.report.style import COLOURS, ERROR, labelled, points, sparse_logarithm, theory_of
 from mesokit.seam.result import Result
 from mesokit.seam.units import Units
 
@@ -20,52 +20,39 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
     """Both axes logarithmic; the ratio to theory below."""
     time, below = result.x["time"], None
     use = time > 0
-    if ax is None and result.expected is not None and use.any():
+    t, value, error = time[use], result.value[use], result.error[use]
+    if ax is None and result.expected is not None and len(t):
         ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
-    else:
-        ax = figure.subplots() if ax is None else ax
-    t = time[use]
+    elif ax is None:
+        ax = figure.subplots()
     components = result.extra.get("components", "")
-    of = result.label.removeprefix("mean square displacement").strip()
-    along = f"along {', '.join(components)}" if components else ""
-    seen = " ".join(filter(None, (of, along)))
-    ax.errorbar(
-        t,
-        result.value[use],
-        result.error[use],
-        fmt="o",
-        mfc="white",
-        color=COLOURS[0],
-        label=f"measured{f' ({seen})' if seen else ''}, $\\pm$ one standard error",
-        zorder=2,
-    )
+    along = f" along {', '.join(components)}" if components else ""
+    seen = f"{result.label.removeprefix('mean square displacement').strip()}{along}".strip()
+    points(ax, t, value, error, label=f"measured{f' ({seen})' if seen else ''}, {ERROR}")
     if result.expected is not None:
-        label = mathematics(f"theory: {result.theory}")
-        ax.plot(t, result.expected[use], "-", color="black", label=label, zorder=3)
+        ax.plot(t, result.expected[use], color="black", label=theory_of(result), zorder=3)
         _better(result, ax, below)
-    elif use.any():
-        _straight(ax, result, t, result.value[use])
+    elif len(t):
+        _straight(ax, result, t, value)
     if result.fit is not None:
         late = "fit of the diffusion coefficient"
         ax.plot(t, result.fit[use], "--", color=COLOURS[1], lw=1.5, label=late, zorder=4)
     if len(t):
-        ax.set_xscale("log")
-        ax.set_yscale("log")
+        ax.set(xscale="log", yscale="log")
         sparse_logarithm(ax.xaxis, t[0], t[-1])
     ax.set_ylabel(labelled("mean square displacement", result.units["value"]))
     legend_above(ax, columns=1)
     if below is not None:
         theory = np.asarray(result.expected)[use]
-        ratio, error = result.value[use] / theory, result.error[use] / theory
         below.axhline(1, color="black", lw=1)
-        below.errorbar(t, ratio, error, fmt="o", mfc="white", ms=3, color=COLOURS[0])
+        points(below, t, value / theory, error / theory, ms=3)
         rough = result.theory.endswith("approximate")
         below.set_ylabel("measured\n/ chaos" if rough else "measured\n/ theory")
     (below or ax).set_xlabel(labelled("time lag $t$", result.units["time"]))
 
 
 def _better(result: Result, ax: Any, below: Any) -> None:
-    """Late lags of a diffusion coefficient that theory knows better than the curve."""
+    """Draw late lags where the coefficient of theory differs from the slope of its curve."""
     known = [c for c in result.comparisons if c.what == "diffusion coefficient"]
     time, curve, axes = result.x["time"], np.asarray(result.expected), result.extra["components"]
     if result.fit is None or len(time) < 2 or not (known and np.isfinite(known[0].expected)):
@@ -82,7 +69,7 @@ def _better(result: Result, ax: Any, below: Any) -> None:
 
 
 def _straight(ax: Any, result: Result, t: Any, value: Any) -> None:
-    """Where no curve is known: that of the diffusion coefficient of theory, or else slope 1."""
+    """Draw a line of slope 1, by the diffusion coefficient of theory or else through the data."""
     diffusion = "a^2/tau", Units().of("a^2/tau")
     known = [c for c in result.comparisons if c.unit in diffusion and np.isfinite(c.expected)]
     if known and result.extra.get("components"):
@@ -95,15 +82,14 @@ def _straight(ax: Any, result: Result, t: Any, value: Any) -> None:
         ax.plot(t, value[-1] * t / t[-1], ":", color="0.5", label="slope 1", zorder=1)
 
 
-def draw_memory(result: Result, figure: Any, ax: Any) -> None:
+def draw_memory(result: Result, ax: Any) -> None:
     """Logarithmic in value and time, as a power law follows an exponential."""
-    ax = figure.subplots() if ax is None else ax
     _logarithmic(result, ax)
     ax.set_ylabel(labelled(r"$|\langle v_x(0)\, v_x(t)\rangle|$", result.units["value"]))
 
 
 def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
-    """Relaxation modulus, and what its Fourier transforms say is stored and lost."""
+    """Relaxation modulus, and the storage and loss moduli from its Fourier transform."""
     right: Any = None
     if ax is None and "frequency" in result.extra:
         ax, right = figure.subplots(1, 2)
@@ -117,16 +103,7 @@ def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
     for k, (name, label) in enumerate((("storage", "$G'$"), ("loss", "$G''$"))):
         value, error = result.extra[name], result.extra[f"{name}_error"]
         use = value > 0
-        right.errorbar(
-            w[use],
-            value[use],
-            _bars(value[use], error[use]),
-            fmt=MARKERS[k],
-            mfc="white",
-            color=COLOURS[k],
-            label=label,
-            zorder=2,
-        )
+        points(right, w[use], value[use], _bars(value[use], error[use]), k, label=label)
         line = result.extra.get(f"{name}_theory")
         if line is not None and (line > 0).any():
             right.plot(w, line, color="black", lw=1.2, label=None if k else "theory", zorder=3)
@@ -151,25 +128,16 @@ def _logarithmic(result: Result, ax: Any) -> None:
     for (label, sign), fill in zip(signs.items(), ("white", COLOURS[0]), strict=True):
         use = late & sign
         if use.any():
-            ax.errorbar(
-                time[use],
-                size[use],
-                _bars(size[use], result.error[use]),
-                fmt="o",
-                mfc=fill,
-                color=COLOURS[0],
-                label=label,
-                zorder=2,
-            )
+            bars = _bars(size[use], result.error[use])
+            points(ax, time[use], size[use], bars, mfc=fill, label=label)
     if result.expected is not None:
-        line, label = abs(result.expected), mathematics(f"theory: {result.theory}")
-        ax.plot(time[late], line[late], "-", color="black", label=label, zorder=3)
+        line = abs(result.expected)[late]
+        ax.plot(time[late], line, color="black", label=theory_of(result), zorder=3)
     tail = result.extra.get("tail")
     if tail is not None and np.isfinite(tail).any():
         ax.plot(time, tail, "--", color=COLOURS[1], lw=1.5, label="theory: hydrodynamic tail")
     if (size[late] > 0).any():
-        ax.set_xscale("log")
-        ax.set_yscale("log")
+        ax.set(xscale="log", yscale="log")
         noise = np.nanmedian(result.error[late]) if np.isfinite(result.error[late]).any() else 0.0
         largest = size[late].max()
         ax.set_ylim(0.2 * max(noise, 1e-6 * largest), 3 * largest)
@@ -178,36 +146,18 @@ def _logarithmic(result: Result, ax: Any) -> None:
 
 
 def _bars(value: Any, error: Any) -> Any:
-    """Error bars (2, n) on a logarithmic axis: those that reach zero have no lower end in sight."""
+    """Error bars (2, n) on a logarithmic axis, where bars to zero go below the picture."""
     return np.stack([np.where(error < value, error, (1 - 1e-12) * value), error])
 
 
-def draw_modes(result: Result, figure: Any, ax: Any) -> None:
-    """One curve for each of the longest waves, up to where all have died."""
-    ax = figure.subplots() if ax is None else ax
-    time, shown = result.x["time"], min(SHOWN, len(result.x["wavenumber"]))
+def draw_modes(result: Result, ax: Any) -> None:
+    """One curve for each of the longest waves, until all are below noise."""
+    time = result.x["time"]
     if not len(time):
         return
     end = _end(time, result)
-    for i, k in enumerate(result.x["wavenumber"][:shown]):
-        colour, use = COLOURS[i % len(COLOURS)], time <= end
-        ax.errorbar(
-            time[use],
-            result.value[use, i],
-            result.error[use, i],
-            fmt=MARKERS[i % len(MARKERS)],
-            mfc="white",
-            color=colour,
-            lw=0.8,
-            label=rf"$k = {k:.4g}\,a^{{-1}}$",
-            zorder=2,
-        )
-        if result.expected is not None:
-            fine, line = time[use], result.expected[use, i]
-            if "curve" in result.extra:
-                fine, line = result.extra["curve_time"], result.extra["curve"][:, i]
-            label = mathematics(f"theory: {result.theory}") if i == 0 else None
-            ax.plot(fine, line, color="black", lw=1, label=label)
+    for i, k in enumerate(result.x["wavenumber"][:SHOWN]):
+        _mode(result, ax, i, time <= end, rf"$k = {k:.4g}\,a^{{-1}}$")
     ax.axhline(0, color="0.6", lw=0.8, zorder=1)
     ax.set_xlim(0, end)
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
@@ -216,31 +166,26 @@ def draw_modes(result: Result, figure: Any, ax: Any) -> None:
     legend_above(ax)
 
 
-def draw_normal_modes(result: Result, figure: Any, ax: Any) -> None:
+def draw_normal_modes(result: Result, ax: Any) -> None:
     """One curve for each of the slowest modes, as far as they are above noise."""
-    ax = figure.subplots() if ax is None else ax
-    time = result.x["time"]
     for i, p in enumerate(result.x["mode"][:SHOWN]):
-        colour = COLOURS[i % len(COLOURS)]
-        use = np.logical_and.accumulate(result.value[:, i] > 2 * result.error[:, i])
-        ax.errorbar(
-            time[use],
-            result.value[use, i],
-            result.error[use, i],
-            fmt=MARKERS[i % len(MARKERS)],
-            mfc="white",
-            color=colour,
-            lw=0.8,
-            label=f"$p = {p}$",
-            zorder=2,
-        )
-        if result.expected is not None:
-            label = mathematics(f"theory: {result.theory}") if i == 0 else None
-            ax.plot(time[use], result.expected[use, i], color="black", lw=1, label=label)
+        clear = np.logical_and.accumulate(result.value[:, i] > 2 * result.error[:, i])
+        _mode(result, ax, i, clear, f"$p = {p}$")
     ax.set_yscale("log", nonpositive="mask")
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
     ax.set_ylabel(r"$\langle X_p(0) X_p(t)\rangle\,/\,\langle X_p^2\rangle$")
     legend_above(ax)
+
+
+def _mode(result: Result, ax: Any, i: int, use: Any, label: str) -> None:
+    """Draw one mode at the lags `use`, and its theory, on a fine grid if there is one."""
+    time = result.x["time"][use]
+    points(ax, time, result.value[use, i], result.error[use, i], i, lw=0.8, label=label)
+    if result.expected is not None:
+        line, theory = result.expected[use, i], theory_of(result) if i == 0 else None
+        if "curve" in result.extra:
+            time, line = result.extra["curve_time"], result.extra["curve"][:, i]
+        ax.plot(time, line, color="black", lw=1, label=theory)
 
 
 def _end(time: NDArray[np.float64], result: Result) -> float:

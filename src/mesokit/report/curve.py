@@ -1,4 +1,4 @@
-"""Any result: its values over the first coordinate, a curve for each choice of the others."""
+"""Curves of any result: values over the first coordinate, on plain or logarithmic axes."""
 
 import itertools
 from typing import Any
@@ -7,57 +7,125 @@ import numpy as np
 
 from mesokit.report.caption import mathematics
 from mesokit.report.finish.legend import legend_above
-from mesokit.report.style import COLOURS, LINES, MARKERS, labelled
+from mesokit.report.style import (
+    COLOURS,
+    LINES,
+    MEASURED,
+    labelled,
+    points,
+    sparse_logarithm,
+    theory_of,
+    time_axis,
+)
 from mesokit.seam.result import Result
 
 SHOWN = 6  # curves
-BARS = r"measured, $\pm$ one standard error"
+MANY = 200  # points of a line that is to look smooth
+SPAN = 5.0  # largest over smallest structure factor from which axes are logarithmic
+GUIDED = 4  # of the last points, through whose middle a guide goes
 
 
-def draw(result: Result, figure: Any, ax: Any) -> None:
-    """Data with error bars, and theory where there is one: of several curves each has its own."""
-    ax = figure.subplots() if ax is None else ax
+def draw(result: Result, ax: Any) -> None:
+    """Data with error bars and theory, a curve for each choice of the other coordinates."""
     if not result.x:
-        ax.errorbar([0], result.value, result.error, fmt="o", mfc="white", color=COLOURS[0])
+        points(ax, [0], result.value, result.error)
         ax.set_xticks([0], [result.name])
         ax.set_ylabel(labelled(result.label, result.units.get("value", "")))
         return
     axis, *others = result.x
     x = np.asarray(result.x[axis])
-    places = np.arange(len(x)) if x.dtype.kind in "US" else x
+    named = x.dtype.kind in "US"
+    places = np.arange(len(x)) if named else x
     choices = itertools.product(*(range(len(result.x[name])) for name in others))
     for i, chosen in enumerate(itertools.islice(choices, SHOWN)):
         at: Any = (slice(None), *chosen)
-        label = ", ".join(
-            f"{name} {result.x[name][k]}".removeprefix("of ")
-            for name, k in zip(others, chosen, strict=True)
-        )
-        ax.errorbar(
-            places,
-            result.value[at],
-            result.error[at],
-            fmt=MARKERS[i],
-            mfc="white",
-            lw=0.8,
-            color=COLOURS[i],
-            label=label or (BARS if np.isfinite(result.error[at]).any() else "measured"),
-            zorder=2,
-        )
+        picked = [(name, result.x[name][k]) for name, k in zip(others, chosen, strict=True)]
+        label = ", ".join(f"{name} {value}".removeprefix("of ") for name, value in picked)
+        usual = MEASURED if np.isfinite(result.error[at]).any() else "measured"
+        points(ax, places, result.value[at], result.error[at], i, lw=0.8, label=label or usual)
         if result.expected is not None and np.isfinite(result.expected[at]).any():
-            of = ", ".join(str(result.x[name][k]) for name, k in zip(others, chosen, strict=True))
-            theory = mathematics(", ".join(filter(None, [f"theory: {result.theory}", of])))
+            of = [f"theory: {result.theory}", ", ".join(str(value) for _, value in picked)]
+            theory = mathematics(", ".join(filter(None, of)))
             look = {"color": "black", "ls": LINES[i]}
-            if x.dtype.kind in "US":  # no line joins names
+            if named:  # no line joins names
                 dash = {"ls": "none", "marker": "_", "ms": 24, "mew": 1.2, "color": look["color"]}
                 ax.plot(places, result.expected[at], label=theory, zorder=1, **dash)
             elif len(places) == 1:  # of which a line through all points shows nothing
                 ax.axhline(result.expected[at][0], lw=1.2, label=theory, **look)
             else:
                 ax.plot(places, result.expected[at], lw=1.2, label=theory, **look)
-    if x.dtype.kind in "US":
+    if named:  # names need no label
         ax.set_xticks(places, [str(name) for name in x])
         ax.set_xlim(-0.5, len(x) - 0.5)  # so that names stay within
-    else:  # names say themselves what they are
+    else:
         ax.set_xlabel(labelled(axis, result.units.get(axis, "")))
     ax.set_ylabel(labelled(result.label, result.units.get("value", "")))
     legend_above(ax)
+
+
+def draw_path(result: Result, ax: Any) -> None:
+    """A number in time as a thin line over the broad one of theory."""
+    time = result.x["time"]
+    if result.expected is not None:
+        ax.plot(time, result.expected, color="0.7", lw=3.5, label=theory_of(result), zorder=1)
+    ax.plot(time, result.value, color=COLOURS[0], lw=1, label="measured", zorder=2)
+    time_axis(ax, time, result.units["time"])
+    ax.set_ylabel(labelled(result.label, result.units["value"]))
+    legend_above(ax)
+
+
+def draw_cooling(result: Result, ax: Any) -> None:
+    """Temperatures in time on logarithmic axes, which have no place for those before the start.
+
+    Theory is drawn at many times in equal ratios: the inverse root of Haff's law is linear in time.
+    """
+    before = len(ax.lines)
+    draw(result, ax)
+    time = result.x["time"]
+    if len(time) > 1 and (result.value > 0).all():
+        ax.set(yscale="log", xscale="log")
+        ax.set_xlim(0.8 * time[time > 0].min(), 1.25 * time[-1])
+        many = np.geomspace(max(ax.get_xlim()[0], time[0]), time[-1], MANY)
+        for line in ax.lines[before:]:
+            if str(line.get_label()).startswith("theory"):
+                root = np.asarray(line.get_ydata(), float) ** -0.5
+                line.set_data(many, np.interp(many, time, root) ** -2.0)
+
+
+def draw_structure_factor(result: Result, ax: Any) -> None:
+    """S(q), on logarithmic axes if it is far above 1 at long waves."""
+    draw(result, ax)
+    value = result.value[np.isfinite(result.value)]
+    if len(value) and value.min() > 0 and value.max() > SPAN * value.min():
+        ax.set(xscale="log", yscale="log")
+        sparse_logarithm(ax.xaxis, *ax.get_xlim())
+        sparse_logarithm(ax.yaxis, *ax.get_ylim())
+    else:
+        ax.set_ylim(bottom=0)
+
+
+def draw_number_fluctuations(result: Result, ax: Any) -> None:
+    """Fluctuations of numbers over their means, birds at random, and the power of large ordered
+    flocks in these."""
+    slope, (mean,) = result.extra.get("guide", np.nan), result.x.values()
+    x, y = np.asarray(mean, float), result.value
+    ax.set(xscale="log", yscale="log")
+    points(ax, x, y, result.error, lw=0.8, label=MEASURED)
+    if result.expected is not None:
+        birds = x[-1] ** 2 / (x[-1] - result.expected[-1] ** 2)  # which are n (1 - n/birds) there
+        n = np.geomspace(x[0], x[-1], MANY)
+        random = np.sqrt(n * (1 - n / birds))
+        label = r"birds at random, $\sqrt{\langle n\rangle}$ in a large box"
+        ax.plot(n[random > 0], random[random > 0], color="black", lw=1.2, label=label, zorder=1)
+    last = slice(-GUIDED, None)
+    if len(x) > 1 and np.isfinite(slope) and (y[last] > 0).all():
+        middle, level = (np.exp(np.log(z[last]).mean()) for z in (x, y))
+        ends = x[[0, -1]]
+        label = rf"$\langle n\rangle^{{{slope:g}}}$ (Toner and Tu, ordered flocks)"
+        guide = level * (ends / middle) ** slope
+        ax.plot(ends, guide, "--", lw=1.2, color=COLOURS[1], label=label, zorder=1)
+    sparse_logarithm(ax.xaxis, *ax.get_xlim())
+    sparse_logarithm(ax.yaxis, *ax.get_ylim())
+    ax.set_xlabel(labelled(r"mean number $\langle n\rangle$", ""))
+    ax.set_ylabel(labelled(result.label, result.units.get("value", "")))
+    legend_above(ax, 2)

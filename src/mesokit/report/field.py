@@ -8,10 +8,11 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.observe.flow_frames import average
 from mesokit.report.caption import symbols
-from mesokit.report.flow import density, quiver, speed
+from mesokit.report.flow import quiver
 from mesokit.report.flow.data import Flow
-from mesokit.report.flow.field_source import FieldSource
 from mesokit.report.flow.kinds import Panel
+from mesokit.report.flow.map_sources import FieldSource
+from mesokit.report.flow.maps import density, speed
 from mesokit.report.flow.noise import note, smooth, smoothing
 from mesokit.report.flow.region import region_of
 from mesokit.report.flow.setting import Setting
@@ -43,9 +44,10 @@ def draw(result: Result, ax: Any, case: Case | None) -> Any:
     if ax is None:
         from mesokit.report.flow.canvas import Canvas
 
-        notes = [section.note(), _note(result, flow), note(panels, flow, clear)]
-        drawn = Canvas(panels, [flow] * len(panels), reaches, region, section, notes=notes)
-        drawn.show([flow] * len(panels))
+        notes, flows = [section.note(), _note(result, flow)], [flow] * len(panels)
+        notes.append(note(panels, flow, clear))
+        drawn = Canvas(panels, flows, reaches, region, section, notes=notes)
+        drawn.show(flows)
         figure, ax = drawn.figure, drawn.axes[0]
     else:
         figure, view = ax.figure, section.view(region)
@@ -62,11 +64,10 @@ def draw(result: Result, ax: Any, case: Case | None) -> Any:
 
 
 def _setting(result: Result, axes: tuple[str, str]) -> Setting:
-    """What a result alone says of its box."""
+    """The box, from the coordinates of a result."""
     x, y = (result.x[axis] for axis in axes)
     size = float(x[0] + x[-1]), float(y[0] + y[-1])
-    parts = result.x.get("component")
-    dimension = len(parts) if parts is not None else int(result.extra.get("dimension", 2))
+    dimension = len(result.x.get("component", ())) or int(result.extra.get("dimension", 2))
     return Setting(axes, ["xyz".index(axis) for axis in axes], size, dimension, (False, False))
 
 
@@ -83,9 +84,11 @@ def _ranged(flow: Flow, setting: Setting) -> Flow:
 
 
 def _note(result: Result, flow: Flow) -> str:
-    """What was averaged, and how sure it is."""
-    text = f"mean {'velocity' if flow.density is None else 'density'} of the run"
-    unit = "a/tau" if flow.density is None else f"1/a^{flow.dimension}"
+    """The quantity that was averaged, and its standard error."""
+    name, unit = "density", f"1/a^{flow.dimension}"
+    if flow.density is None:
+        name, unit = "velocity", "a/tau"
+    text = f"mean {name} of the run"
     error = result.error if flow.sure is None else result.error[flow.sure]
     if result.samples < FEW:
         text += f", of {result.samples} sample" + "s" * (result.samples != 1)

@@ -17,11 +17,11 @@ from mesokit.report import (
     curve,
     field,
     forces,
-    probe,
+    histogram,
     profile,
     series,
+    stress_in_time,
     tensor,
-    wake,
 )
 from mesokit.report.caption import LINE, below, compared
 from mesokit.report.finish.labels import fit_labels
@@ -30,52 +30,44 @@ from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
 from mesokit.report.flow.layout import page_width
 from mesokit.report.flow.source import axes_of
-from mesokit.report.molecules import histogram, tracks
-from mesokit.report.particles import (
-    cooling,
-    flocks,
-    histograms,
-    number_fluctuations,
-    path,
-    snapshots,
-    structure_factor,
-)
-from mesokit.report.rheology import stress_in_time
+from mesokit.report.particles import flocks, snapshots, tracks
 from mesokit.report.style import STYLE, WIDTH, fonts, height_of
 from mesokit.seam.in_units import showing
 from mesokit.seam.result import Result
 
-# What a result says that it is drawn as. Maps know their own figure.
-DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
+# By `Result.drawing`: figures of one panel, and those of several or of their main one alone
+ONE_PANEL: dict[str, Callable[[Result, Any], None]] = {
     "curve": curve.draw,
-    "series": series.draw,
     "flow series": series.draw_flow,
-    "profile": profile.draw,
-    "displacement": correlation.draw_displacement,
     "memory": correlation.draw_memory,
     "normal modes": correlation.draw_normal_modes,
     "modes": correlation.draw_modes,
+    "structure factor": curve.draw_structure_factor,
+    "number fluctuations": curve.draw_number_fluctuations,
+    "cooling": curve.draw_cooling,
+    "path": curve.draw_path,
+    "centreline": profile.draw_wake,
+    "histogram": histogram.draw,
+    "clusters": flocks.draw_clusters,
+}
+DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
+    "series": series.draw,
+    "profile": profile.draw,
+    "displacement": correlation.draw_displacement,
     "modulus": correlation.draw_modulus,
     "stress in time": stress_in_time.draw,
     "tensor": tensor.draw,
     "moduli": tensor.draw_moduli,
     "per solid": forces.draw,
-    "histograms": histograms.draw,
+    "histograms": histogram.draw_several,
     "snapshots": snapshots.draw,
-    "structure factor": structure_factor.draw,
-    "number fluctuations": number_fluctuations.draw,
-    "cooling": cooling.draw,
-    "path": path.draw,
-    "centreline": wake.draw,
-    "signal": probe.draw,
+    "signal": series.draw_signal,
     "tracks": tracks.draw,
-    "histogram": histogram.draw,
     "order": flocks.draw_order,
     "bands": flocks.draw_bands,
-    "clusters": flocks.draw_clusters,
 }
 MAPS = ("map", "frames")
-FEW, FLAT = 4, ("tensor", "moduli")  # places of a curve that fill no page; what has few numbers
+FEW, FLAT = 4, ("tensor", "moduli")  # places of a curve that fill no page; drawings of few numbers
 LOW = 0.6  # of the usual height, of a figure of few numbers
 
 
@@ -100,18 +92,21 @@ def plot(
 
     with mpl.rc_context(STYLE), showing(case):
         if ax is not None:
-            into = partial(_draw_into, result, ax, case)
-            into() if result.drawing in MAPS else add(ax, into, label, colour)
+            if result.drawing in MAPS:
+                field.draw(result, ax, case)
+            else:
+                add(ax, partial(_draw, result, ax.figure, ax), label, colour)
             return ax
     wide = WIDTH if width is None else width
     with mpl.rc_context(STYLE | fonts(wide)), page_width(width), showing(case):
         if result.drawing in MAPS:
             return field.draw(result, None, case)
         text = compared(result.comparisons, wide)
-        height = height_of(wide) * (LOW if _few(result) else 1.0)
-        height += LINE * len(text.splitlines())
+        places = len(next(iter(result.x.values()), ()))
+        few = result.drawing in FLAT or (result.drawing == "curve" and places <= FEW)
+        height = height_of(wide) * (LOW if few else 1.0) + LINE * len(text.splitlines())
         figure = ShownFigure(figsize=(wide, height), layout="constrained")
-        DRAW[result.drawing](result, figure, None)
+        _draw(result, figure, None)
         for one in figure.axes:
             _around_one_place(one)
         below(figure, text)
@@ -119,10 +114,11 @@ def plot(
         return figure
 
 
-def _few(result: Result) -> bool:
-    """Whether a figure has too few numbers to fill a page."""
-    places = next(iter(result.x.values()), ())
-    return result.drawing in FLAT or (result.drawing == "curve" and len(places) <= FEW)
+def _draw(result: Result, figure: Any, ax: Any) -> None:
+    if result.drawing in ONE_PANEL:
+        ONE_PANEL[result.drawing](result, figure.subplots() if ax is None else ax)
+    else:
+        DRAW[result.drawing](result, figure, ax)
 
 
 def _around_one_place(ax: Any) -> None:
@@ -132,13 +128,6 @@ def _around_one_place(ax: Any) -> None:
         if getattr(ax, f"get_{name}scale")() == "log" and 0 < low == high:
             getattr(ax, f"set_autoscale{name}_on")(False)  # which would warn of it
             getattr(ax, f"set_{name}lim")(low / 2, 2 * high)
-
-
-def _draw_into(result: Result, ax: Any, case: Case | None) -> None:
-    if result.drawing in MAPS:
-        field.draw(result, ax, case)
-    else:
-        DRAW[result.drawing](result, ax.figure, ax)
 
 
 def save(
@@ -177,15 +166,12 @@ def save_all(
     for result in results:
         if result.samples and not _has_numbers(result):
             warnings.warn(f"{result.name}: no figure, as no number is known yet", stacklevel=2)
-    name = run or folder.resolve().name
-    return [
-        save(r, folder / f"{r.name}{ending}", case, width=width, run=name)
-        for r in drawn_once(results)
-    ]
+    how: Any = {"width": width, "run": run or folder.resolve().name}
+    return [save(r, folder / f"{r.name}{ending}", case, **how) for r in drawn_once(results)]
 
 
 def drawn_once(results: Iterable[Result]) -> list[Result]:
-    """Those that have samples and numbers, without frames whose mean is a map among them."""
+    """Results with samples and numbers, without frames whose mean is a map among them."""
     found = [result for result in results if result.samples and _has_numbers(result)]
     maps = [set(axes_of(r)) for r in found if r.drawing == "map" and "component" in r.x]
     return [r for r in found if r.drawing != "frames" or set(axes_of(r)) not in maps]

@@ -6,22 +6,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.report.finish.legend import legend_of
-from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, lettered
+from mesokit.report.style import (
+    COLOURS,
+    ERROR,
+    LINES,
+    MARKERS,
+    labelled,
+    lettered,
+    points,
+    time_axis,
+)
 from mesokit.seam.result import Result
 
 SHOWN = 12  # bodies in one figure
 MORE = 1.7  # inches for each further row
 PIECES = 120  # means that a force in time is drawn with
-BAR = r"$\pm$ one standard error"
 
 Places = NDArray[np.intp]
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
-    """Forces and torques, and in time what acts on the first; in given axes the forces alone.
+    """Forces and torques, and in time those on the first solid; in given axes the forces alone.
 
-    Plates have panels of their own, one for each component: the fluid presses on them with far more
-    than it gives to what stands in it. Their torques are left out.
+    Plates have panels of their own, one for each component, as the pressure on them exceeds all
+    forces on other solids. Their torques are left out.
     """
     names = [str(name) for name in result.x["component"]]
     plates = np.asarray(result.extra.get("plates", np.zeros(len(result.x["body"]), int)), bool)
@@ -53,13 +61,12 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     if timed:
         panels.append(parts[-1].subplots())
         _in_time(panels[-1], result, forces, int(solids[0]))
-    if len(panels) > 1:
-        lettered(panels)
-    legend_of(figure, panels[: len(panels) - timed], title=BAR)
+    lettered(panels)
+    legend_of(figure, panels[: len(panels) - timed], title=ERROR)
 
 
 def _about(result: Result, bodies: Places, name: str) -> str:
-    """What a torque is about."""
+    """The point to which a torque refers, in words; nothing for a force."""
     if name[0] == "f" or "pivot" not in result.extra:
         return ""
     if len(bodies) > 1:
@@ -82,27 +89,14 @@ def _panel(ax: Any, result: Result, columns: list[int], chosen: Places) -> None:
     for number, (k, name) in enumerate(zip(columns, names, strict=True)):
         axis = "xyz".index(name[1])
         place = np.arange(len(bodies)) + (number - (len(columns) - 1) / 2) * width
-        ax.errorbar(
-            place,
-            result.value[chosen, k],
-            result.error[chosen, k],
-            fmt=MARKERS[axis + 3 * (name[0] == "t")],
-            mfc="white",
-            color=COLOURS[axis],
-            label=_symbol(name),
-            zorder=3,
-        )
+        look = {"fmt": MARKERS[axis + 3 * (name[0] == "t")], "label": _symbol(name), "zorder": 3}
+        points(ax, place, result.value[chosen, k], result.error[chosen, k], axis, **look)
         if result.expected is not None and np.isfinite(result.expected[chosen, k]).any():
             ends = place - width / 2, place + width / 2
             ax.hlines(result.expected[chosen, k], *ends, color="black", lw=1.5, label="theory")
     tilted = max(map(len, bodies)) * len(bodies) > 12
-    ax.set_xticks(
-        np.arange(len(bodies)),
-        bodies,
-        rotation=40 if tilted else 0,
-        ha="right" if tilted else "center",
-        fontsize=9,
-    )
+    turned = {"rotation": 40, "ha": "right"} if tilted else {"rotation": 0, "ha": "center"}
+    ax.set_xticks(np.arange(len(bodies)), bodies, fontsize=9, **turned)
     ax.set_xlim(-0.6, len(bodies) - 0.4)
     ax.margins(y=0.15)
     kind = "force" if names[0][0] == "f" else "torque"
@@ -123,11 +117,9 @@ def _in_time(ax: Any, result: Result, columns: list[int], body: int) -> None:
         name = str(result.x["component"][k])
         style = {"ls": LINES[number], "color": COLOURS["xyz".index(name[1])]}
         ax.plot(time, series[:, k], lw=1, label=_symbol(name), **style)
-    ax.set_xlabel(labelled("time $t$", "tau"))
+    time_axis(ax, time, "tau")
     ax.set_ylabel(labelled(f"force on {result.x['body'][body]}", result.units["fx"]))
     ax.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=len(columns), borderaxespad=0.2)
-    if count > 1:
-        ax.set_xlim(time[0], time[-1])
     scale = result.extra.get("coefficient", np.nan)
     if np.isfinite(scale) and scale:
         right = ax.secondary_yaxis("right", functions=(lambda f: f * scale, lambda c: c / scale))

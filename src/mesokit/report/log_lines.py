@@ -27,14 +27,11 @@ class LogLines:
         self.told = 0
 
     def next(self, row: Sequence[float]) -> list[str]:
-        """What to tell: the line of these numbers, after a header where that is due."""
+        """The line of these numbers, after a header where that is due."""
         numbers, texts = iter(row), []
         for uncertain in self.uncertain:
             number = next(numbers)
             texts.append(with_error(number, next(numbers)) if uncertain else f"{number:.6g}")
         rows = [self.names, texts] if self.told % AGAIN == 0 else [texts]
         self.told += 1
-        return [self._aligned(words) for words in rows]
-
-    def _aligned(self, words: Sequence[str]) -> str:
-        return "  ".join(word.rjust(width) for word, width in zip(words, self.widths, strict=True))
+        return ["  ".join(map(str.rjust, words, self.widths)) for words in rows]

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 
 class ShownFigure(Figure):
-    """A figure made without pyplot, which draws itself where a notebook asks for a picture.
+    """A figure made without pyplot, which a notebook shows as a picture.
 
     `origin` says where it comes from (`mesokit.report.finish.origin`), None if unknown.
     """
@@ -20,7 +20,7 @@ class ShownFigure(Figure):
         FigureCanvasAgg(self)
 
     def _repr_png_(self) -> bytes:
-        """What a notebook asks for."""
+        """The picture, for notebooks."""
         data = io.BytesIO()
         self.savefig(data, format="png", dpi=120)
         return data.getvalue()

@@ -21,11 +21,11 @@ NOTED = 1.0  # seconds without a word from the run, from which on that is looked
 
 
 class Reporter:
-    """Tell how a run goes.
+    """Progress of a run, in words.
 
     Parameters
     ----------
-    quiet: say nothing.
+    quiet: write nothing.
     stream: where to (standard error unless said); a terminal gets a bar that is redrawn, anything
         else a line as soon as the speed is known, and then one every `seconds`.
 
@@ -64,26 +64,26 @@ class Reporter:
             self._show("", f"{phase}: {self.amount(total_steps - step)}")
 
     def lengthen(self, total_steps: int) -> None:
-        """There is more to do than was thought."""
+        """Set a larger number of steps."""
         self.total = total_steps
         if self.task is not None:
-            self.task.total = total_steps  # asked to do so, the bar would forget the rate
+            self.task.total = total_steps  # `bar.update` would reset the rate
 
     def compiling(self, words: str) -> None:
-        """Kernels are compiled or loaded: say so, and leave it out of the rates."""
+        """Write that kernels are compiled or loaded, which does not count in the rates."""
         if not self.quiet:
             self.fresh = True
             self._show(words, words)
 
     def update(self, step: int) -> None:
-        """`step` steps are done. Cheap: call it as often as you like."""
+        """Set the number of steps done. Cheap: call it as often as you like."""
         steps, self.last = step - self.last, step
         if self.quiet or self.bar is None or self.task is None:
             return
         before, self.now = self.now, time.monotonic()
         took, pace = self.now - before, self.pace
         self.pace = took / max(steps, 1)
-        # observables are compiled in their first sample: that says nothing about the rest
+        # observables are compiled in their first sample, which is no measure of the rest
         stalled = took > NOTED and pace is not None and self.pace > STALL * pace
         if self.fresh or stalled:
             self._measure_anew()
@@ -95,17 +95,14 @@ class Reporter:
         self.bar.advance(self.task.id, step - self.task.completed)
         if not warm:
             self.next = self.now + (REDRAW if self.has_bar() else self.seconds)
-            done = (step - self.first) / max(self.total - self.first, 1)
-            words = self.words(step)
+            done, words = (step - self.first) / max(self.total - self.first, 1), self.words(step)
             self._show(words, f"{self.phase}: {100 * done:3.0f} %, {words}")
 
     def tell(self, line: str) -> None:
-        """Say a line that stays, above the bar if there is one."""
-        if self.quiet:
-            return
+        """Write a line that stays, above the bar if there is one."""
         if self.bar is not None and self.has_bar():
             self.bar.console.print(line, markup=False, highlight=False, soft_wrap=True)
-        else:
+        elif not self.quiet:
             self._say(line)
 
     def finish(self) -> None:
@@ -182,14 +179,12 @@ class Reporter:
 
 
 class FilmReporter(Reporter):
-    """Tell how the drawing of a film goes: its steps are frames."""
+    """Progress of the drawing of a film: its steps are frames."""
 
     noun = "frame"
 
     def amount(self, steps: int) -> str:
-        """How much there is to do."""
         return f"{steps} frames"
 
     def speed(self, rate: float) -> str:
-        """Frames per second."""
         return f"{rate:.3g} frames/s"

@@ -1,4 +1,4 @@
-"""Time series of what should be conserved."""
+"""Time series: conserved quantities, a mean flow, and the velocity at a place."""
 
 import math
 from collections.abc import Iterable
@@ -8,7 +8,15 @@ import numpy as np
 
 from mesokit.report.caption import symbols
 from mesokit.report.finish.legend import entries, legend_above
-from mesokit.report.style import COLOURS, HEIGHT, LINES, labelled
+from mesokit.report.style import (
+    COLOURS,
+    HEIGHT,
+    LINES,
+    labelled,
+    mean_line,
+    sparse_logarithm,
+    time_axis,
+)
 from mesokit.seam.result import Result
 
 ROW = 1.25  # inches of a panel
@@ -48,9 +56,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         _energies(result, panels[counted + 1], energies)
     _energy(result, panels[-2], np.sum(energies, axis=0), "total" if bound else "kinetic")
     _temperature(result, panels[-1], names.index("temperature"))
-    panels[-1].set_xlabel(labelled("time $t$", result.units["time"]))
-    if len(time) > 1:
-        panels[-1].set_xlim(time[0], time[-1])
+    time_axis(panels[-1], time, result.units["time"])
     for panel in panels:
         panel.yaxis.label.set_size(9)
         panel.locator_params(axis="y", nbins=4)
@@ -58,7 +64,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
 
 
 def _energy(result: Result, ax: Any, energy: Any, kind: str) -> None:
-    """Relative to what it should be, with a line there; without theory that of a particle."""
+    """Draw an energy relative to theory, or without theory that of a particle."""
     names = [str(name) for name in result.x["component"]]
     time, number = result.x["time"], result.value[:, names.index("number")]
     wanted = np.full(len(energy), np.nan)
@@ -80,13 +86,9 @@ def _energy(result: Result, ax: Any, energy: Any, kind: str) -> None:
 
 
 def _energies(result: Result, ax: Any, energies: list[Any]) -> None:
-    """How the kinetic and the potential energy have changed since the first sample."""
+    """Draw changes of the kinetic and the potential energy since the first sample."""
     curves = [
-        (
-            result.x["time"],
-            energy - energy[:1],
-            {"ls": LINES[k], "color": COLOURS[k], "label": word},
-        )
+        (result.x["time"], energy - energy[:1], _look(k, word))
         for k, (energy, word) in enumerate(zip(energies, ("kinetic", "potential"), strict=True))
     ]
     _scaled(ax, "energy\nchange", curves, result.units["kinetic_energy"])
@@ -94,18 +96,14 @@ def _energies(result: Result, ax: Any, energies: list[Any]) -> None:
 
 
 def _momentum(result: Result, ax: Any, columns: list[int]) -> None:
-    """Its components, or how far they have moved from the first sample where they should not."""
+    """Draw the components of the momentum, or their changes where these should be zero."""
     time, names = result.x["time"], [str(name) for name in result.x["component"]]
     expected, unit = result.expected, result.units[names[columns[0]]]
     value = result.value[:, columns]
     change = value - value[:1]
     flows = not bool(result.extra.get("conserves_momentum", _constant(expected, columns)))
     curves: list[Any] = [
-        (
-            time,
-            (value if flows else change)[:, k],
-            {"ls": LINES[k], "color": COLOURS[k], "label": f"${names[i][-1]}$"},
-        )
+        (time, (value if flows else change)[:, k], _look(k, f"${names[i][-1]}$"))
         for k, i in enumerate(columns)
     ]
     theory = {"color": "black", "lw": 1.3, "label": "theory"}
@@ -114,6 +112,10 @@ def _momentum(result: Result, ax: Any, columns: list[int]) -> None:
         curves += [(time, expected[:, i], theory) for i in known]
     _scaled(ax, "momentum" if flows else "momentum\nchange", curves, unit)
     _beside(ax)
+
+
+def _look(k: int, label: str) -> dict[str, Any]:
+    return {"ls": LINES[k], "color": COLOURS[k], "label": label}
 
 
 def _constant(expected: Any, columns: list[int]) -> bool:
@@ -125,10 +127,7 @@ def _constant(expected: Any, columns: list[int]) -> bool:
 
 
 def _scaled(ax: Any, label: str, curves: Iterable[tuple[Any, Any, Any]], unit: str) -> None:
-    """Lines of numbers that are all very large or small, with the power of ten in the label.
-
-    That and the unit are a line of their own: panels are low.
-    """
+    """Draw curves, with their power of ten and unit in a second line of the label."""
     curves = list(curves)
     sizes = [abs(y[np.isfinite(y)]).max(initial=0.0) for _, y, _ in curves]
     largest = max(sizes, default=0.0)
@@ -143,43 +142,61 @@ def _scaled(ax: Any, label: str, curves: Iterable[tuple[Any, Any, Any]], unit: s
 
 def _beside(ax: Any) -> None:
     """A legend to the right of the panel, where it hides no data."""
-    handles = entries([ax])
-    if handles:
+    if handles := entries([ax]):
         ax.legend(handles.values(), handles, loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
-def draw_flow(result: Result, figure: Any, ax: Any) -> None:
+def draw_flow(result: Result, ax: Any) -> None:
     """Mean velocity in time, its average with the error as a band, and the theory."""
-    ax = figure.subplots() if ax is None else ax
-    time, mean, error = result.x["time"], result.extra["mean"], result.extra["mean_error"]
+    time = result.x["time"]
+    names = {"hagen-poiseuille": "Hagen-Poiseuille", "poiseuille": "Poiseuille, no slip"}
     ax.plot(time, result.value, color=COLOURS[0], lw=0.8, label="measured")
-    label = r"mean, $\pm$ one standard error" if np.isfinite(error) else "mean"
-    ax.axhline(mean, color=COLOURS[1], ls="--", lw=1.3, label=label)
-    if np.isfinite(error):
-        ax.axhspan(mean - error, mean + error, color=COLOURS[1], alpha=0.25, lw=0)
+    mean_line(ax, result.extra["mean"], result.extra["mean_error"])
     if result.expected is not None and len(time):
-        ax.axhline(
-            result.expected[0], color="black", lw=1.5, label=f"theory: {_pretty(result.theory)}"
-        )
-    ax.set_xlabel(labelled("time $t$", result.units["time"]))
+        label = f"theory: {names.get(result.theory, result.theory)}"
+        ax.axhline(result.expected[0], color="black", lw=1.5, label=label)
+    time_axis(ax, time, result.units["time"])
     ax.set_ylabel(labelled(f"mean velocity along ${result.extra['axis']}$", result.units["value"]))
-    if len(time) > 1:
-        ax.set_xlim(time[0], time[-1])
     legend_above(ax)
 
 
-def _pretty(theory: str) -> str:
-    names = {"hagen-poiseuille": "Hagen-Poiseuille", "poiseuille": "Poiseuille, no slip"}
-    return names.get(theory, theory)
+def draw_signal(result: Result, figure: Any, ax: Any) -> None:
+    """Velocity at a place over its power spectrum; in given axes the velocity alone."""
+    bottom = None
+    if ax is None:
+        ax, bottom = figure.subplots(2, 1, height_ratios=[2, 3])
+    time, letter = result.extra["time"], result.extra["component"]
+    ax.plot(time, result.extra["velocity"][:, "xyz".index(letter)], color=COLOURS[0], lw=0.8)
+    time_axis(ax, time, result.units["time"])
+    ax.set_ylabel(labelled(f"velocity $v_{letter}$", result.units["velocity"]))
+    if bottom is None:
+        return
+    bottom.set_xlabel(labelled("frequency $f$", result.units["frequency"]))
+    bottom.set_ylabel(labelled(f"power of $v_{letter}$", result.units["value"]))
+    use = result.value > 0
+    if not use.any():
+        bottom.text(0.5, 0.5, "too few samples", ha="center", transform=bottom.transAxes)
+        return
+    frequency, power, error = result.x["frequency"][use], result.value[use], result.error[use]
+    low, band = np.maximum(power - error, 1e-3 * power), {"color": COLOURS[0], "alpha": 0.25}
+    bottom.fill_between(frequency, low, power + error, lw=0, label="one standard error", **band)
+    bottom.plot(frequency, power, color=COLOURS[0], lw=1.2, label="measured")
+    peak = result.extra["dominant"]
+    if np.isfinite(peak):
+        bottom.axvline(peak, color=COLOURS[1], ls="--", lw=1.3, label="dominant frequency")
+    bottom.set(xscale="log", yscale="log")
+    sparse_logarithm(bottom.xaxis, frequency[0], frequency[-1])
+    sparse_logarithm(bottom.yaxis, float(low.min()), float(power.max()))
+    legend_above(bottom)
 
 
 def _temperature(result: Result, ax: Any, index: int) -> None:
     value, expected = result.value[:, index], result.expected
     known = expected is not None and bool(np.isfinite(expected[:, index]).any())
-    label = "measured" if known else None
-    ax.plot(result.x["time"], value, color=COLOURS[0], lw=0.8, label=label)
+    time, label = result.x["time"], "measured" if known else None
+    ax.plot(time, value, color=COLOURS[0], lw=0.8, label=label)
     if expected is not None and known:
-        ax.plot(result.x["time"], expected[:, index], color="black", lw=1.3, label="theory")
+        ax.plot(time, expected[:, index], color="black", lw=1.3, label="theory")
         level = float(np.nanmean(expected[:, index]))
         reach = 1.6 * max(float(np.nanmax(abs(value - level))), 1e-3 * abs(level))
         ax.set_ylim(level - reach, level + reach)

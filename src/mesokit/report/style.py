@@ -4,11 +4,16 @@ import itertools
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
+
 from mesokit.report.caption import mathematics, symbols
 from mesokit.seam.in_units import shown
+from mesokit.seam.result import Result
 
 WIDTH, HEIGHT = 6.4, 4.8  # inches
 LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is
+ERROR = r"$\pm$ one standard error"
+MEASURED = f"measured, {ERROR}"  # the label of data with error bars
 MARKERS = "osD^v<>pP*X"
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
 LETTERS = "abcdefghijkl"  # of panels
@@ -78,6 +83,33 @@ def labelled(label: str, unit: str) -> str:
     return f"{mathematics(label)}  [{symbols(unit)}]".lstrip() if unit else mathematics(label)
 
 
+def theory_of(result: Result) -> str:
+    """The label of what theory expects."""
+    return mathematics(f"theory: {result.theory}")
+
+
+def points(ax: Any, x: Any, value: Any, error: Any, number: int = 0, **look: Any) -> None:
+    """Draw data with error bars, in the marker and colour of a series; `look` changes these."""
+    usual = {"fmt": MARKERS[number % len(MARKERS)], "color": COLOURS[number % len(COLOURS)]}
+    ax.errorbar(x, value, error, **usual | {"mfc": "white"} | look)
+
+
+def mean_line(ax: Any, mean: float, error: float, label: str = "mean") -> None:
+    """Draw a mean as a dashed line, and its standard error, if known, as a band."""
+    known = bool(np.isfinite(error))
+    label = f"{label}, {ERROR}" if known else label
+    ax.axhline(mean, color=COLOURS[1], ls="--", lw=1.3, label=label)
+    if known:
+        ax.axhspan(mean - error, mean + error, color=COLOURS[1], alpha=0.25, lw=0)
+
+
+def time_axis(ax: Any, time: Any, unit: str) -> None:
+    """Label an axis of time, which ends with the data."""
+    ax.set_xlabel(labelled("time $t$", unit))
+    if len(time) > 1:
+        ax.set_xlim(time[0], time[-1])
+
+
 def lettered(panels: Sequence[Any]) -> None:
     """Letters (a), (b), ... before the titles of several panels, or in their place."""
     for letter, ax in zip(LETTERS, panels, strict=False):
@@ -88,12 +120,13 @@ def lettered(panels: Sequence[Any]) -> None:
 
 
 def sparse_logarithm(axis: Any, least: float, most: float) -> None:
-    """Numbers on a logarithmic axis that do not run into one another: powers of ten, and where
-    there are less than two of these also 2 and 5 times as much."""
-    from matplotlib.ticker import FuncFormatter, NullFormatter
+    """Write powers of ten on a logarithmic axis, and over less than two decades 2 and 5 times as
+    much, so that numbers do not overlap."""
+    from matplotlib.ticker import NullFormatter
 
     few = least > 0 and most / least < 100
-    shown = FuncFormatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in "25" else "")
-    axis.set_minor_formatter(shown if few else NullFormatter())
+    axis.set_minor_formatter(
+        (lambda x, _: f"{x:g}" if f"{x:e}"[0] in "25" else "") if few else NullFormatter()
+    )
     if few:
-        axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+        axis.set_major_formatter(lambda x, _: f"{x:g}")

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mesokit.report.finish.legend import entries, legend_in_rows, legend_of
-from mesokit.report.style import COLOURS, MARKERS, labelled, lettered
+from mesokit.report.style import ERROR, labelled, lettered, points
 from mesokit.seam.result import Result
 
 SYMBOLS = {
@@ -16,7 +16,6 @@ SYMBOLS = {
     "products of bond components": r"$\langle b_\alpha b_\beta\rangle$",
 }
 
-BARS = r", $\pm$ one standard error"  # said once
 BELOW: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.06)}  # of given axes, a legend
 TITLES = {"products of bond components": ("off the diagonal", "on the diagonal")}  # of panels
 
@@ -28,7 +27,8 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     """
     every = list(itertools.product(*(range(len(axis)) for axis in result.x.values())))
     normal = [e for e in every if _is_normal(result, e)]
-    across = [e for e in every if not _is_normal(result, e) and _once(result, e)]
+    # xy but not yx, which is the same up to noise
+    across = [e for e in every if not _is_normal(result, e) and (len(e) < 3 or e[1] < e[2])]
     shear, straight = TITLES.get(result.label, ("shear", "normal"))
     panels = [(across, shear), (normal, straight)]
     if result.label == "size of molecules":
@@ -49,48 +49,37 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
 def draw_moduli(result: Result, figure: Any, ax: Any) -> None:
     """Storage and loss modulus, by parts."""
     every = list(itertools.product(*(range(len(axis)) for axis in result.x.values())))
-    given = ax
-    ax = figure.subplots() if given is None else given
-    _panel(ax, result, every, rf"$\omega = {result.extra['frequency']:g}\,\tau^{{-1}}$")
-    if given is None:
-        legend_of(figure, [ax])
+    panel = figure.subplots() if ax is None else ax
+    _panel(panel, result, every, rf"$\omega = {result.extra['frequency']:g}\,\tau^{{-1}}$")
+    if ax is None:
+        legend_of(figure, [panel])
     else:
         legend_in_rows(ax, entries([ax]), np.inf, most=2, **BELOW)
 
 
 def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) -> None:
-    groups, inner = next(iter(result.x.values())), _inner_names(result, entries)
+    groups = next(iter(result.x.values()))
+    inner = list(dict.fromkeys("".join(_names(result, e)) for e in entries))
     numbers = sorted({e[0] for e in entries})
     width = 0.6 / max(len(numbers), 1)
     known = bool(np.isfinite(result.error).any())
     for place_of, number in enumerate(numbers):
         chosen = [e for e in entries if e[0] == number]
-        place = np.array([inner.index(_name(result, e)) for e in chosen], float)
+        place = np.array([inner.index("".join(_names(result, e))) for e in chosen], float)
         place += (place_of - (len(numbers) - 1) / 2) * width
-        value = np.array([result.value[e] for e in chosen])
-        error = np.array([result.error[e] for e in chosen])
-        ax.errorbar(
-            place,
-            value,
-            error,
-            fmt=MARKERS[number],
-            mfc="white",
-            color=COLOURS[number],
-            label=str(groups[number]) + BARS * (known and not number),
-            zorder=3,
-        )
+        value, error = (np.array([a[e] for e in chosen]) for a in (result.value, result.error))
+        label = str(groups[number]) + f", {ERROR}" * (known and not number)  # said once
+        points(ax, place, value, error, number, label=label, zorder=3)
         if result.expected is not None:
             expected = np.array([result.expected[e] for e in chosen])
-            if np.isfinite(expected).any():
-                ends = place - width / 2, place + width / 2
-                rough = _is_rough(result, str(groups[number])) & (expected != 0)
-                for use, label, look in (
-                    (~rough, "theory", {"color": "black"}),
-                    (rough, "theory, approximate", {"color": "0.4", "ls": (0, (2, 1))}),
-                ):
-                    if np.isfinite(expected[use]).any():
-                        first, last = (end[use] for end in ends)
-                        ax.hlines(expected[use], first, last, lw=1.5, label=label, **look)
+            rough = _is_rough(result, str(groups[number])) & (expected != 0)
+            for use, label, look in (
+                (~rough, "theory", {"color": "black"}),
+                (rough, "theory, approximate", {"color": "0.4", "ls": (0, (2, 1))}),
+            ):
+                if np.isfinite(expected[use]).any():
+                    first, last = place[use] - width / 2, place[use] + width / 2
+                    ax.hlines(expected[use], first, last, lw=1.5, label=label, **look)
     ax.set_xticks(range(len(inner)), [f"${name}$" for name in inner])
     ax.set_xlim(-0.6, len(inner) - 0.4)
     ax.set_title(title, fontsize=10)
@@ -99,10 +88,7 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
 
 
 def _is_rough(result: Result, part: str) -> bool:
-    """Whether theory of a part is approximate: by comparisons that name it, or else by any.
-
-    What theory expects to vanish does, whatever is approximate.
-    """
+    """Whether theory of a part is approximate: by comparisons that name it, or else by any."""
     known = [c for c in result.comparisons if np.isfinite(c.expected)]
     parts = [str(name) for name in next(iter(result.x.values()))]
     named = [c for c in known if any(c.what.startswith(name) for name in parts)]
@@ -117,19 +103,6 @@ def _names(result: Result, entry: tuple[int, ...]) -> list[str]:
     return [str(axis[i]) for axis, i in zip(axes[1:], entry[1:], strict=True)]
 
 
-def _name(result: Result, entry: tuple[int, ...]) -> str:
-    return "".join(_names(result, entry))
-
-
-def _inner_names(result: Result, entries: list[tuple[int, ...]]) -> list[str]:
-    return list(dict.fromkeys(_name(result, e) for e in entries))
-
-
 def _is_normal(result: Result, entry: tuple[int, ...]) -> bool:
     names = _names(result, entry)
     return names[0] == (names[1] if len(names) > 1 else result.extra.get("axis"))
-
-
-def _once(result: Result, entry: tuple[int, ...]) -> bool:
-    """xy but not yx, which is the same up to noise."""
-    return len(entry) < 3 or entry[1] < entry[2]

@@ -231,7 +231,7 @@ class Result(Shown):
     Parameters
     ----------
     quantity, name: of the observable.
-    drawing: how `mesokit.report` draws it, one of the names in `report.figures.DRAW`; a "curve" of
+    drawing: how `mesokit.report` draws it, one of the names in `report/figures.py`; a "curve" of
         any result is its values over the first coordinate.
     x: coordinates of the axes of `value`, in order: numbers, or texts where an axis lists
         components or parts. Empty for a single number.

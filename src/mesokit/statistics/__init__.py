@@ -8,6 +8,7 @@ from mesokit.statistics.blocking import (
     correlated_error,
     falling_error,
     independent_error,
+    student,
 )
 from mesokit.statistics.blocks import Blocks
 from mesokit.statistics.fit import (
@@ -29,36 +30,13 @@ from mesokit.statistics.spectrum import (
     mean_spectrum,
     spectrum,
 )
-from mesokit.statistics.student import student
 from mesokit.statistics.tally import Tally
 from mesokit.statistics.time_series import TimeSeries
 
 __all__ = [
-    "FEWEST_BLOCKS",
-    "FEWEST_PIECES",
-    "Blocks",
-    "ChiSquare",
-    "Correlation",
-    "Fit",
-    "Frequency",
-    "MultipleTau",
-    "Spectrum",
-    "Tally",
-    "TimeSeries",
-    "blocking_error",
-    "chi_square",
-    "correlated",
-    "correlated_error",
-    "deviation",
-    "dominant_frequency",
-    "falling_error",
-    "independent_error",
-    "mean_frequency",
-    "mean_spectrum",
-    "ratio",
-    "spectrum",
-    "spread_ids",
-    "student",
-    "weighted_line",
-    "weighted_polynomial",
-]
+    "FEWEST_BLOCKS", "FEWEST_PIECES", "Blocks", "ChiSquare", "Correlation", "Fit", "Frequency",
+    "MultipleTau", "Spectrum", "Tally", "TimeSeries", "blocking_error", "chi_square",
+    "correlated", "correlated_error", "deviation", "dominant_frequency", "falling_error",
+    "independent_error", "mean_frequency", "mean_spectrum", "ratio", "spectrum", "spread_ids",
+    "student", "weighted_line", "weighted_polynomial",
+]  # fmt: skip

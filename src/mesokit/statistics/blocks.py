@@ -56,14 +56,10 @@ class Blocks:
             self._partial = 0
             self._complete += 1
             if self._complete == self.capacity:
-                self._merge()
-
-    def _merge(self) -> None:
-        half = self.capacity // 2
-        self._sums[:half] = merge_pairs(self._sums)
-        self._sums[half:] = 0
-        self._complete = half
-        self.block_length *= 2
+                self._complete //= 2
+                self._sums[: self._complete] = merge_pairs(self._sums)
+                self._sums[self._complete :] = 0
+                self.block_length *= 2
 
     def sums(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Block sums (n, *shape) and samples (n,), the block being filled included."""

@@ -121,11 +121,21 @@ class MultipleTau:
 
         Raises ValueError for any other shape, TypeError for a complex sample of real signals.
         """
-        self._store(value)
+        if np.shape(value) != self.shape:
+            raise ValueError(f"a sample must have shape {self.shape}, got {np.shape(value)}")
+        array = np.asarray(value)
+        if len(self._sample) == 2:
+            self._sample[1] = array.imag
+        elif array.dtype.kind == "c":
+            raise TypeError("a complex sample needs MultipleTau(..., dtype=complex)")
+        self._sample[0] = array.real
         block = self._count // self.block_length
         if block == self.blocks:
-            self._merge()
             block //= 2
+            for _, sums in self._levels:
+                sums[:block] = merge_pairs(sums)
+                sums[block:] = 0
+            self.block_length *= 2
         entry, number = self._sample, self._count  # the entry of the level, and how many before it
         self._count += 1
         depth = 0
@@ -182,23 +192,6 @@ class MultipleTau:
     def _average(self, products: NDArray[np.float64]) -> NDArray[np.float64]:
         """Mean over the pooled axes."""
         return products.mean(axis=tuple(range(-self.pooled, 0))) if self.pooled else products
-
-    def _store(self, value: ArrayLike) -> None:
-        if np.shape(value) != self.shape:
-            raise ValueError(f"a sample must have shape {self.shape}, got {np.shape(value)}")
-        array = np.asarray(value)
-        if len(self._sample) == 2:
-            self._sample[1] = array.imag
-        elif array.dtype.kind == "c":
-            raise TypeError("a complex sample needs MultipleTau(..., dtype=complex)")
-        self._sample[0] = array.real
-
-    def _merge(self) -> None:
-        half = self.blocks // 2
-        for _, sums in self._levels:
-            sums[:half] = merge_pairs(sums)
-            sums[half:] = 0
-        self.block_length *= 2
 
     def correlation(
         self, average_over: int | tuple[int, ...] | None = None, normalised: bool = False
@@ -266,15 +259,13 @@ class MultipleTau:
                 yield found[0] if len(found) == 1 else _joined(found)
 
     def _level_products(self, depth: int, within_blocks: bool) -> Products:
-        """What one level holds: no lags where it has not been reached, or is left out."""
-        step = self.averages**depth
+        """The products of one level: no lags where it has not been reached, or is left out."""
+        step, used = self.averages**depth, -(-self._count // self.block_length)
         if depth >= len(self._levels) or (within_blocks and step > self.block_length):
-            used = -(-self._count // self.block_length)
             none: NDArray[np.int64] = np.zeros(0, np.int64)
             return Products(none, np.zeros((used, 0, *self.kept)), np.zeros((used, 0)))
         sums = self._levels[depth].sums[:, ::-1]  # shortest lag first
         offsets = np.arange(self.points - sums.shape[1], self.points)
-        used = -(-self._count // self.block_length)
         ends = np.minimum(np.arange(1, used + 1) * self.block_length, self._count) // step
         starts = np.arange(used) * self.block_length // step
         counts = np.maximum(ends[:, None] - np.maximum(starts[:, None], offsets), 0)

@@ -15,8 +15,6 @@ BITS = 32  # of the lower part
 class Tally:
     """Sums of whole numbers, each as a higher and a lower part, and how many make one unit.
 
-    Examples
-    --------
     >>> tally = Tally((2,), unit=4.0)
     >>> for _ in range(3):
     ...     tally.add(np.array([2**62, -2]))

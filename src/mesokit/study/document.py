@@ -9,8 +9,7 @@ from mesokit.case.case import Case
 from mesokit.errors import CaseError, MesokitError, RunError
 from mesokit.io.atomic import write_text
 from mesokit.io.run_directory import RunDirectory
-from mesokit.report.document.links import link_to
-from mesokit.report.document.pictures import Picture, drawn
+from mesokit.report.document.pictures import Picture, drawn, link_to
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
 from mesokit.report.document.template import render
 from mesokit.report.finish.origin import as_text

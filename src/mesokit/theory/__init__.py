@@ -1,4 +1,4 @@
-"""What the simulated fluids should obey: one law a file, pure NumPy and SciPy.
+"""Laws that the simulated fluids should obey: one subject a file, pure NumPy and SciPy.
 
 Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in cell sides a = 1.
 The laws are listed in `__init__.pyi`. All are imported at once: many have the name of their file,

@@ -22,24 +22,25 @@ from mesokit.theory.chain_size import mean_square_gyration as mean_square_gyrati
 from mesokit.theory.channel_cylinder import Reference as Reference
 from mesokit.theory.channel_cylinder import channel_cylinder as channel_cylinder
 from mesokit.theory.channel_cylinder import square_wake_length as square_wake_length
-from mesokit.theory.collapse_in_a_line import collapse_restitution as collapse_restitution
+from mesokit.theory.contact import hertz_contact as hertz_contact
+from mesokit.theory.contact import spring_dashpot as spring_dashpot
 from mesokit.theory.couette import couette_velocity as couette_velocity
+from mesokit.theory.couette import lees_edwards_relaxation_time as lees_edwards_relaxation_time
+from mesokit.theory.couette import lees_edwards_velocity as lees_edwards_velocity
 from mesokit.theory.cubic_array import cubic_array_drag as cubic_array_drag
 from mesokit.theory.cubic_array import cubic_array_drag_dilute as cubic_array_drag_dilute
 from mesokit.theory.cubic_array import cubic_array_permeability as cubic_array_permeability
 from mesokit.theory.demixing import demixing_coupling as demixing_coupling
 from mesokit.theory.demixing import demixing_diffusion as demixing_diffusion
-from mesokit.theory.diffusion_in_box import diffusion_in_box as diffusion_in_box
 from mesokit.theory.dumbbell_shear import dumbbell_viscosity as dumbbell_viscosity
 from mesokit.theory.dumbbell_shear import fene_p_thinning as fene_p_thinning
 from mesokit.theory.dumbbell_shear import pair_friction as pair_friction
-from mesokit.theory.elastic_share import elastic_share as elastic_share
-from mesokit.theory.enskog_diffusion import enskog_diffusion as enskog_diffusion
-from mesokit.theory.enskog_rate import contact_value as contact_value
-from mesokit.theory.enskog_rate import enskog_rate as enskog_rate
+from mesokit.theory.enskog import contact_value as contact_value
+from mesokit.theory.enskog import enskog_diffusion as enskog_diffusion
+from mesokit.theory.enskog import enskog_rate as enskog_rate
+from mesokit.theory.finite_size import diffusion_in_box as diffusion_in_box
 from mesokit.theory.finite_size import viscosity_renormalised as viscosity_renormalised
 from mesokit.theory.flight_moduli import flight_moduli as flight_moduli
-from mesokit.theory.fourth_cumulant import fourth_cumulant as fourth_cumulant
 from mesokit.theory.free_time import collision_speeds as collision_speeds
 from mesokit.theory.free_time import free_time_cdf as free_time_cdf
 from mesokit.theory.free_time import free_time_spread as free_time_spread
@@ -49,13 +50,15 @@ from mesokit.theory.gamma import cell_energy_variance as cell_energy_variance
 from mesokit.theory.gaussian_structure_factor import (
     gaussian_structure_factor as gaussian_structure_factor,
 )
-from mesokit.theory.haff import haff_temperature as haff_temperature
-from mesokit.theory.haff import haff_time as haff_time
+from mesokit.theory.granular_temperature import haff_temperature as haff_temperature
+from mesokit.theory.granular_temperature import haff_time as haff_time
+from mesokit.theory.granular_temperature import kicked_temperature as kicked_temperature
 from mesokit.theory.hagen_poiseuille import hagen_poiseuille_flow_rate as hagen_poiseuille_flow_rate
 from mesokit.theory.hagen_poiseuille import hagen_poiseuille_velocity as hagen_poiseuille_velocity
 from mesokit.theory.hard_sphere_pressure import compressibility as compressibility
 from mesokit.theory.hard_sphere_pressure import compressibility_of_few as compressibility_of_few
 from mesokit.theory.hard_sphere_pressure import mean_speed_factor as mean_speed_factor
+from mesokit.theory.hard_sphere_pressure import mixture_compressibility as mixture_compressibility
 from mesokit.theory.harmonic_spring import Spring as Spring
 from mesokit.theory.harmonic_spring import mean_square_bond as mean_square_bond
 from mesokit.theory.harmonic_spring import spring as spring
@@ -70,23 +73,22 @@ from mesokit.theory.heat_at_walls import heat_at_walls as heat_at_walls
 from mesokit.theory.heat_at_walls import slit_temperature_rise as slit_temperature_rise
 from mesokit.theory.held_temperature import shear_warming as shear_warming
 from mesokit.theory.held_temperature import temperature_offset as temperature_offset
-from mesokit.theory.hertz_contact import hertz_contact as hertz_contact
 from mesokit.theory.hookean_shear import ShearStress as ShearStress
 from mesokit.theory.hookean_shear import SizeInShear as SizeInShear
 from mesokit.theory.hookean_shear import dumbbell_thinning as dumbbell_thinning
 from mesokit.theory.hookean_shear import maxwell_shear as maxwell_shear
 from mesokit.theory.hookean_shear import shear_heating as shear_heating
 from mesokit.theory.hookean_shear import size_in_shear as size_in_shear
-from mesokit.theory.kicked_temperature import kicked_temperature as kicked_temperature
+from mesokit.theory.imperfect_gas import LennardJonesTail as LennardJonesTail
+from mesokit.theory.imperfect_gas import lennard_jones_tail as lennard_jones_tail
+from mesokit.theory.imperfect_gas import second_virial as second_virial
+from mesokit.theory.inelastic_collapse import collapse_restitution as collapse_restitution
+from mesokit.theory.inelastic_collapse import elastic_share as elastic_share
 from mesokit.theory.kolmogorov import kolmogorov_onset_time as kolmogorov_onset_time
 from mesokit.theory.kolmogorov import kolmogorov_velocity as kolmogorov_velocity
 from mesokit.theory.kolmogorov import kolmogorov_viscosity as kolmogorov_viscosity
 from mesokit.theory.kremer_grest import BondLength as BondLength
 from mesokit.theory.kremer_grest import kremer_grest_bond as kremer_grest_bond
-from mesokit.theory.lees_edwards import lees_edwards_relaxation_time as lees_edwards_relaxation_time
-from mesokit.theory.lees_edwards import lees_edwards_velocity as lees_edwards_velocity
-from mesokit.theory.lennard_jones_tail import LennardJonesTail as LennardJonesTail
-from mesokit.theory.lennard_jones_tail import lennard_jones_tail as lennard_jones_tail
 from mesokit.theory.maxwell import maxwell_component_cdf as maxwell_component_cdf
 from mesokit.theory.maxwell import maxwell_component_pdf as maxwell_component_pdf
 from mesokit.theory.maxwell import maxwell_speed_cdf as maxwell_speed_cdf
@@ -95,7 +97,6 @@ from mesokit.theory.mean_square_displacement import (
     decorrelation_from_diffusion as decorrelation_from_diffusion,
 )
 from mesokit.theory.mean_square_displacement import msd_molecular_chaos as msd_molecular_chaos
-from mesokit.theory.mixture_pressure import mixture_compressibility as mixture_compressibility
 from mesokit.theory.normal_modes import NormalModes as NormalModes
 from mesokit.theory.normal_modes import linear_modes as linear_modes
 from mesokit.theory.normal_modes import network_modes as network_modes
@@ -131,7 +132,6 @@ from mesokit.theory.relaxation_modulus import storage_modulus as storage_modulus
 from mesokit.theory.rouse_times import RouseTimes as RouseTimes
 from mesokit.theory.rouse_times import rouse_times as rouse_times
 from mesokit.theory.rouse_times import rouse_times_from_slowest as rouse_times_from_slowest
-from mesokit.theory.second_virial import second_virial as second_virial
 from mesokit.theory.self_diffusion import self_diffusion as self_diffusion
 from mesokit.theory.slip_sphere import enskog_friction as enskog_friction
 from mesokit.theory.slip_sphere import slip_sphere_diffusion as slip_sphere_diffusion
@@ -139,9 +139,9 @@ from mesokit.theory.slope import EndOfSliding as EndOfSliding
 from mesokit.theory.slope import Rolling as Rolling
 from mesokit.theory.slope import down_slope as down_slope
 from mesokit.theory.slope import end_of_sliding as end_of_sliding
+from mesokit.theory.sonine import fourth_cumulant as fourth_cumulant
 from mesokit.theory.sonine import sonine_component_cdf as sonine_component_cdf
 from mesokit.theory.sonine import sonine_speed_cdf as sonine_speed_cdf
-from mesokit.theory.spring_dashpot import spring_dashpot as spring_dashpot
 from mesokit.theory.square_array import square_array_drag as square_array_drag
 from mesokit.theory.square_array import square_array_drag_dilute as square_array_drag_dilute
 from mesokit.theory.square_array import square_array_permeability as square_array_permeability

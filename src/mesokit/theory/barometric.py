@@ -1,4 +1,4 @@
-"""Where an ideal gas is in gravity."""
+"""Heights of an ideal gas under gravity."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -7,17 +7,9 @@ from numpy.typing import ArrayLike, NDArray
 def barometric_cdf(height: ArrayLike, scale: float, depth: float) -> NDArray[np.float64]:
     """Share of the particles below a height: (1 - exp(-z/h))/(1 - exp(-L/h)), h = kT/(m g).
 
-    Parameters
-    ----------
-    height : array_like
-        Of centres above the lowest they can reach, in a; what is outside counts as at the end.
-    scale : float
-        Scale height h in a.
-    depth : float
-        L from the lowest to the highest that centres can reach, in a.
+    Parameters: `height` of centres above the lowest that they can reach, in a, heights beyond the
+    ends count as at the end; `scale` h in a; `depth` L from the lowest to the highest, in a.
 
-    Examples
-    --------
     >>> barometric_cdf([-1.0, 1.0, 9.0], 1.0, 9.0).round(4)
     array([0.    , 0.6322, 1.    ])
     """
@@ -28,13 +20,8 @@ def barometric_cdf(height: ArrayLike, scale: float, depth: float) -> NDArray[np.
 def barometric_mean(scale: float, depth: float) -> float:
     """Mean height of centres above the lowest they can reach: h - L/(exp(L/h) - 1).
 
-    Parameters
-    ----------
-    scale, depth
-        As in `barometric_cdf`.
+    Parameters: `scale`, `depth` as in `barometric_cdf`.
 
-    Examples
-    --------
     >>> round(barometric_mean(2.0, 100.0), 6), round(barometric_mean(1e6, 10.0), 3)
     (2.0, 5.0)
     """

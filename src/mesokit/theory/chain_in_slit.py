@@ -39,14 +39,17 @@ def beads_in_slit(
     """
     grid = _grid(edges, spread, decay)
     beads = 1 + max(max(pair) for pair in links)
-    if len(links) == beads:
-        every = np.tile(_ring(grid, beads), (beads, 1))
+    if len(links) == beads:  # a ring: the diagonal of as many bonds one after the other
+        root = np.sqrt(grid.factor * grid.weight)
+        values, vectors = np.linalg.eigh(root[:, None] * (grid.bond / grid.weight) * root)
+        of_bead = vectors**2 @ (values / values[-1]) ** beads / grid.weight
+        every = np.tile(of_bead, (beads, 1))
     else:
         weights, sums = _inwards(grid, links, np.ones((1, len(grid.y))))
         outside = [np.ones(len(grid.y))] * beads
         for a, b in links:
             rest = outside[a] * weights[a][0] / sums[b][0]
-            outside[b] = grid.over_bond(rest[None])[0]
+            outside[b] = (rest[None] @ grid.bond.T)[0]
             outside[b] /= outside[b].max()
         every = np.stack([o * w[0] for o, w in zip(outside, weights, strict=True)])
     return grid.binned(every)
@@ -90,10 +93,6 @@ class _Grid(NamedTuple):
     bond: Floats
     factor: Floats
 
-    def over_bond(self, values: NDArray) -> NDArray:
-        """Integral over the place of the other end, of functions (K, M)."""
-        return np.asarray(values @ self.bond.T)
-
     def binned(self, density: Floats) -> Floats:
         """Averages in bins of densities (n, M), 1 in the mean."""
         per_bin = (density * self.weight).reshape(len(density), len(self.edges) - 1, -1).sum(axis=2)
@@ -128,14 +127,7 @@ def _inwards(
     weights: list[NDArray] = [grid.factor * phases for _ in range(beads)]
     sums: dict[int, NDArray] = {}
     for a, b in reversed(links):
-        sums[b] = grid.over_bond(weights[b])
+        sums[b] = weights[b] @ grid.bond.T  # over the place of the other end
         sums[b] /= np.abs(sums[b][0]).max()
         weights[a] = weights[a] * sums[b]
     return weights, sums
-
-
-def _ring(grid: _Grid, beads: int) -> Floats:
-    """Density of a bead of a ring: the diagonal of as many bonds one after the other."""
-    root = np.sqrt(grid.factor * grid.weight)
-    values, vectors = np.linalg.eigh(root[:, None] * (grid.bond / grid.weight) * root)
-    return np.asarray(vectors**2 @ (values / values[-1]) ** beads / grid.weight)

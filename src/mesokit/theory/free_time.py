@@ -1,4 +1,4 @@
-"""How long hard spheres fly between two collisions."""
+"""Times of flight of hard spheres between two collisions."""
 
 import math
 from typing import NamedTuple
@@ -23,13 +23,8 @@ class Speeds(NamedTuple):
 def collision_speeds(dimension: int) -> Speeds:
     """How often equal hard spheres of a speed collide in molecular chaos: as the mean of |v - v'|.
 
-    Parameters
-    ----------
-    dimension : int
-        2 or 3.
+    Parameters: `dimension` 2 or 3.
 
-    Examples
-    --------
     >>> found = collision_speeds(3)
     >>> float(round(found.weight.sum(), 9)), float(round(found.rate[0], 4))
     (1.0, 0.7071)
@@ -55,15 +50,8 @@ def free_time_cdf(time: ArrayLike, dimension: int) -> Array:
     end with it: F = 1 - <r exp(-r t)>/<r> (Visco, van Wijland and Trizac 2008). Exact for dilute
     elastic spheres. It is not exactly 1 - exp(-t).
 
-    Parameters
-    ----------
-    time : array_like
-        Time of flight over its mean.
-    dimension : int
-        2 or 3.
+    Parameters: `time` of flight over its mean; `dimension` 2 or 3.
 
-    Examples
-    --------
     >>> [round(float(x), 4) for x in free_time_cdf([0.0, 1.0, 5.0], 3)]
     [0.0, 0.639, 0.9914]
     """
@@ -76,13 +64,8 @@ def free_time_cdf(time: ArrayLike, dimension: int) -> Array:
 def free_time_spread(dimension: int) -> float:
     """<t^2>/<t>^2 of times of flight: 2 <1/r> <r>, and 2 if rates did not depend on the speed.
 
-    Parameters
-    ----------
-    dimension : int
-        2 or 3.
+    Parameters: `dimension` 2 or 3.
 
-    Examples
-    --------
     >>> round(free_time_spread(2), 4), round(free_time_spread(3), 4)
     (2.1084, 2.0761)
     """

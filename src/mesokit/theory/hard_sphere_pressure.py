@@ -1,7 +1,7 @@
-"""Equation of state of equal hard disks and spheres."""
+"""Equations of state of hard disks and spheres, and of their mixtures."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 # B_k / B_2^(k-1) of hard disks, k = 2 to 10 (Clisby and McCoy 2006, table 1)
 DISKS = (1.0, 0.782004, 0.532232, 0.333556, 0.198843, 0.114868, 0.0649930, 0.0362193, 0.0199537)
@@ -14,15 +14,8 @@ def compressibility(packing_fraction: float, dimension: int) -> float:
     the last two, good to 0.1 % below a packing fraction of 0.5 and 1 % at 0.6. Spheres: Kolafa
     (Boublik and Nezbeda 1986, eq. 4.46).
 
-    Parameters
-    ----------
-    packing_fraction : float
-        Part of the area or volume that they fill.
-    dimension : int
-        2 or 3.
+    Parameters: `packing_fraction` part of the area or volume that they fill; `dimension` 2 or 3.
 
-    Examples
-    --------
     >>> round(compressibility(0.3, 3), 4), round(compressibility(0.4, 2), 4)
     (3.9843, 2.8294)
     """
@@ -41,17 +34,9 @@ def compressibility_of_few(law: Callable[[float], float], packing_fraction: floa
     In a box of few the number around a sphere cannot fluctuate: Z falls by
     (phi/2n) d ln(d(phi Z)/dphi)/dphi (Lebowitz and Percus 1961).
 
-    Parameters
-    ----------
-    law : function
-        Z of many, by the packing fraction.
-    packing_fraction : float
-        Part of the area or volume that they fill.
-    n : int
-        Number of spheres.
+    Parameters: `law` Z of many, by the packing fraction; `packing_fraction` part of the area or
+    volume that they fill; `n` number of spheres.
 
-    Examples
-    --------
     >>> few = compressibility_of_few(lambda phi: compressibility(phi, 3), 0.16, 12)
     >>> round(few, 3), round(compressibility(0.16, 3), 3)
     (1.944, 1.995)
@@ -72,3 +57,32 @@ def mean_speed_factor(degrees: int) -> float:
     """
     half = 0.5 * degrees
     return math.sqrt(half) * math.exp(math.lgamma(half) - math.lgamma(half + 0.5))
+
+
+def mixture_compressibility(
+    packing_fraction: float, moments: Sequence[float], dimension: int
+) -> float:
+    """Z = P/(n kT) of a mixture of additive hard disks or spheres in equilibrium.
+
+    Disks after Santos, Yuste and Lopez de Haro (1999), from the equation of state of equal disks;
+    spheres after Boublik (1970) and Mansoori, Carnahan, Starling and Leland (1971).
+
+    Parameters: `packing_fraction` part of the area or volume that they fill; `moments` means of the
+    diameter, its square and, in 3D, its cube; in a, a^2, a^3; `dimension` 2 or 3.
+
+    Half of diameter 1, half of 0.6.
+
+    >>> round(mixture_compressibility(0.4, (0.8, 0.68, 0.608), 3), 3)
+    6.287
+    >>> round(mixture_compressibility(0.4, (0.8, 0.68), 2), 3)
+    2.761
+    """
+    phi = packing_fraction
+    if dimension == 2:
+        share = moments[0] ** 2 / moments[1]
+        return 1 + (1 - share) * phi / (1 - phi) + share * (compressibility(phi, 2) - 1)
+    one, two, three = moments
+    free = 1 - phi
+    first = 3 * phi * one * two / three / free**2
+    second = phi**2 * two**3 / three**2 * (3 - phi) / free**3
+    return 1 / free + first + second

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesokit.theory._check import one_of, positive
-from mesokit.theory.transport import Angle, Rule, cell_means, transport
+from mesokit.theory.transport import Angle, Rule, cell_memory, transport
 
 Array = NDArray[np.float64]
 MILNE = (1 / 7, 0.0845, 1.355)  # limit of long flights, what short ones add, and how that fades
@@ -51,7 +51,7 @@ def heat_at_walls(
     known = transport(rule, dimension, density, timestep, angle, kT, mass)
     assert known.thermal_diffusivity is not None
     conductivity = density * (dimension + 2) / 2 * known.thermal_diffusivity
-    n, p, kept = cell_means(dimension, density, angle, rule, "none")
+    n, p, kept, _ = cell_memory(dimension, density, angle, rule, "none")
     within = dimension * float(np.sum(p * (1 - kept) * (1 - 1 / n))) / (12 * timestep)
     flights = conductivity / within - 1
     least, more, fades = MILNE

@@ -4,7 +4,7 @@ import numpy as np
 
 from mesokit.theory._check import dimension_two_or_three, one_of, positive
 from mesokit.theory.srd_angular_table import cell_table, rigid_share
-from mesokit.theory.transport import Angle, Rule, Thermostat, cell_means, transport
+from mesokit.theory.transport import Angle, Rule, Thermostat, cell_memory, transport
 
 
 def shear_warming(
@@ -39,7 +39,7 @@ def shear_warming(
     friction = 2 * timestep * transport(*given).viscosity_kinetic / dimension
     if rule.startswith("srd") and thermostat == "none":
         raise ValueError("thermostat = 'none': expected one that holds the temperature")
-    n, p, kept = cell_means(dimension, density, angle, rule, thermostat)
+    n, p, kept, _ = cell_memory(dimension, density, angle, rule, thermostat)
     if rule.endswith("+a"):
         rank = np.rint(dimension * n * rigid_share(dimension, n))
         sheared = cell_table(dimension, n)[1]

@@ -9,17 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 def bounce_height(height: float, restitution: float, bounces: int) -> float:
     """How high it flies after some bounces: h e^(2n).
 
-    Parameters
-    ----------
-    height : float
-        From which it falls at rest, in a.
-    restitution : float
-        Speed after a bounce over that before.
-    bounces : int
-        How many.
+    Parameters: `height` from which it falls at rest, in a; `restitution` speed after a bounce over
+    that before; `bounces` their number.
 
-    Examples
-    --------
     >>> round(bounce_height(1.0, 0.9, 10), 6)
     0.121577
     """
@@ -32,19 +24,9 @@ def bounce_time(height: float, gravity: float, restitution: float, bounces: int)
     The first is after sqrt(2 h/g), each flight after that takes e times the one before. Infinitely
     many bounces take sqrt(2 h/g) (1 + e)/(1 - e).
 
-    Parameters
-    ----------
-    height : float
-        From which it falls at rest, in a.
-    gravity : float
-        In a/time^2.
-    restitution : float
-        Below 1.
-    bounces : int
-        From 1.
+    Parameters: `height` from which it falls at rest, in a; `gravity` in a/time^2; `restitution`
+    below 1; `bounces` from 1.
 
-    Examples
-    --------
     >>> round(bounce_time(1.0, 1.0, 0.5, 1), 6), round(bounce_time(1.0, 1.0, 0.5, 60), 6)
     (1.414214, 4.242641)
     """
@@ -60,19 +42,9 @@ def dissipative_bounces(
     n = ceil(ln(t_c sqrt(g/(8 h)))/ln e) (the model of Luding and McNamara 1998): the flight after
     the n-th bounce is the first that is shorter than t_c. Then the ball goes on for ever.
 
-    Parameters
-    ----------
-    height : float
-        From which it falls at rest, in a.
-    gravity : float
-        In a/time^2.
-    restitution : float
-        Above 0 and below 1.
-    contact_time : float
-        Shorter than the first flight.
+    Parameters: `height` from which it falls at rest, in a; `gravity` in a/time^2; `restitution`
+    above 0 and below 1; `contact_time` shorter than the first flight.
 
-    Examples
-    --------
     >>> [dissipative_bounces(1.0, 1.0, e, 0.01) for e in (0.5, 0.8, 0.9)]
     [9, 26, 54]
     """
@@ -87,15 +59,9 @@ def lossy_bounces(
 
     Without a contact time those after some 10^-15 of the first flight are counted no more.
 
-    Parameters
-    ----------
-    time : array
-        Since the ball began to fall.
-    height, gravity, restitution, contact_time : float
-        As of `dissipative_bounces`; the contact time may be 0.
+    Parameters: `time` since the ball began to fall; `height`, `gravity`, `restitution`,
+    `contact_time` as of `dissipative_bounces`; the contact time may be 0.
 
-    Examples
-    --------
     >>> lossy_bounces([1.0, 2.0, 100.0], 1.0, 1.0, 0.5, 0.01).tolist()
     [0, 1, 9]
     """
@@ -108,20 +74,10 @@ def bounce_path(
 ) -> NDArray[np.float64]:
     """How high the ball is at some times.
 
-    Parameters
-    ----------
-    time : array
-        Since it began to fall.
-    height, gravity : float
-        From which it falls at rest.
-    restitution : float
-        Above 0, up to 1.
-    contact_time : float
-        Bounces sooner than this after another lose nothing; 0 for none: the ball then lies still
-        after infinitely many bounces.
+    Parameters: `time` since it began to fall; `height`, `gravity` from which it falls at rest;
+    `restitution` above 0, up to 1; `contact_time` bounces sooner than this after another lose
+    nothing; 0 for none: the ball then lies still after infinitely many bounces.
 
-    Examples
-    --------
     >>> bounce_path([0.0, 1.0, 2**0.5 + 1.0, 50.0], 1.0, 1.0, 0.5).round(6).tolist()
     [1.0, 0.5, 0.207107, 0.0]
     >>> bool(bounce_path(50.0, 1.0, 1.0, 0.5, 0.1) > 0)

@@ -98,17 +98,11 @@ def vectorial_order(strength: float, number: int, dimension: int) -> CrowdOrder:
         raise ValueError(f"strength must be from 0 to 1, got {strength}")
     if strength == 0:
         return CrowdOrder(1.0, 1.0, 1.0)
-    highest, disordered = _highest(dimension), (dimension - 1) / dimension
-    if strength >= highest:
+    if strength >= _strength_at(_last(dimension), dimension):  # no ordered branch
         return _disordered(strength, number, dimension)
-    if strength > disordered:
+    if strength > (dimension - 1) / dimension:
         return CrowdOrder(math.nan, math.nan, math.nan)
     return _ordered(strength, number, dimension)
-
-
-def _highest(dimension: int) -> float:
-    """The strength up to which an ordered branch exists."""
-    return _strength_at(_last(dimension), dimension)
 
 
 def _last(dimension: int) -> float:

@@ -59,15 +59,11 @@ def self_diffusion(
     if sides is not None:
         positive(**{f"box[{axis}]": side for axis, side in enumerate(sides)})
     noise = (dimension - 1) / dimension * kT / (density * mass)
-    modes = noise * (_infinite() if sides is None else _modes(sides))
+    infinite = math.sqrt(math.pi / (2 * SMEARED)) / (2 * math.pi**2)  # the sum over the volume
+    modes = noise * (infinite if sides is None else _modes(sides))
     spreading = viscosity + chaos  # nu + D of D (nu + D) = D_chaos (nu + D) + modes
     both = (spreading + math.sqrt(spreading**2 + 4 * modes)) / 2
     return both - viscosity
-
-
-def _infinite() -> float:
-    """The sum over the modes of an infinite box, over its volume (3D)."""
-    return math.sqrt(math.pi / (2 * SMEARED)) / (2 * math.pi**2)
 
 
 def _modes(sides: tuple[float, ...]) -> float:

@@ -3,7 +3,7 @@
 import math
 
 from mesokit.theory._check import dimension_two_or_three, positive
-from mesokit.theory.diffusion_in_box import diffusion_in_box
+from mesokit.theory.finite_size import diffusion_in_box
 
 
 def enskog_friction(

@@ -19,19 +19,9 @@ def down_slope(angle: float, friction: float, gravity: float, kappa: float) -> R
     It rolls with g sin(angle)/(1 + kappa) if tan(angle) <= mu (1 + 1/kappa), and slides with
     g (sin(angle) - mu cos(angle)) else.
 
-    Parameters
-    ----------
-    angle : float
-        Of the slope, in radians.
-    friction : float
-        Coulomb's mu.
-    gravity : float
-        g.
-    kappa : float
-        Moment of inertia over m r^2: 1/2 of a disk, 2/5 of a sphere.
+    Parameters: `angle` of the slope, in radians; `friction` Coulomb's mu; `gravity` g; `kappa`
+    moment of inertia over m r^2: 1/2 of a disk, 2/5 of a sphere.
 
-    Examples
-    --------
     >>> down_slope(math.radians(20), 0.5, 1.0, 0.4).rolls
     True
     """
@@ -53,8 +43,6 @@ def end_of_sliding(speed: float, friction: float, gravity: float, kappa: float) 
     """A body that was thrown along a level floor without spin: it rolls from the time
     kappa v/(mu g (1 + kappa)) on, with v/(1 + kappa).
 
-    Examples
-    --------
     >>> end = end_of_sliding(1.0, 0.5, 1.0, 0.4)
     >>> round(end.time, 6), round(end.speed, 6)
     (0.571429, 0.714286)

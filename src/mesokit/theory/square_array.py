@@ -97,19 +97,13 @@ def _flow(n: int, powers: Powers, logarithm: float, x: Array, y: Array) -> list[
     """Stream function, its slope along x, vorticity, and the slope of that along x."""
     r, angle = np.hypot(x, y), np.arctan2(y, x)
     whirls = [(c * (p * p - n * n), p - 2) for c, p in powers]
-    log = np.log(r)
-    parts = (
-        (
-            sum(c * r ** float(p) for c, p in powers) + logarithm * r * log,
-            sum(c * p * r ** float(p - 1) for c, p in powers) + logarithm * (log + 1),
-        ),
-        (
-            sum(c * r ** float(p) for c, p in whirls) + logarithm * 2 / r,
-            sum(c * p * r ** float(p - 1) for c, p in whirls) - logarithm * 2 / r**2,
-        ),
-    )
-    sine, cosine = np.sin(n * angle), np.cos(n * angle)
+    log, sine, cosine = np.log(r), np.sin(n * angle), np.cos(n * angle)
     out = []
-    for value, slope in parts:
+    for terms, more, more_slope in (
+        (powers, logarithm * r * log, logarithm * (log + 1)),
+        (whirls, logarithm * 2 / r, -logarithm * 2 / r**2),
+    ):
+        value = sum(c * r ** float(p) for c, p in terms) + more
+        slope = sum(c * p * r ** float(p - 1) for c, p in terms) + more_slope
         out += [value * sine, slope * sine * x / r - value * n * cosine * y / r**2]
     return out

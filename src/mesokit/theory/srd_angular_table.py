@@ -167,14 +167,8 @@ def _one_block(inner: Array, particles: int) -> Array:
                 kept.append(1.0 + np.einsum("nrs,nsr->n", part, part) / 2)
     # <tr S> is known exactly: using it as a control variate removes most of the noise of q and l
     noise = trace / dimension - (particles - 1) / 12
-    return np.stack(
-        [
-            np.mean(kept, axis=0),
-            24 * (np.mean(shear, axis=0) - noise / 2),
-            12 * (np.mean(along, axis=0) - noise),
-        ],
-        axis=1,
-    )
+    moved, pressed = np.mean(shear, axis=0) - noise / 2, np.mean(along, axis=0) - noise
+    return np.stack([np.mean(kept, axis=0), 24 * moved, 12 * pressed], axis=1)
 
 
 def _levi_civita(dimension: int) -> Array:

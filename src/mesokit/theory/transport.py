@@ -194,17 +194,11 @@ def _check(
         )
 
 
-def cell_means(
-    dimension: int, density: float, angle: Angle, rule: str, thermostat: str
-) -> tuple[Array, Array, Array]:
-    """Occupancies N, their Poisson probabilities, and what a cell keeps of a velocity, r1 s1."""
-    return cell_memory(dimension, density, angle, rule, thermostat)[:3]
-
-
 def cell_memory(
     dimension: int, density: float, angle: Angle, rule: str, thermostat: str
 ) -> tuple[Array, Array, Array, Array]:
-    """The same, and what a cell keeps of a stress about its mean velocity, r2 s2."""
+    """Occupancies N, their Poisson probabilities, and the shares that a cell keeps of a velocity,
+    r1 s1, and of a stress about its mean velocity, r2 s2."""
     n, p = _poisson(density)
     rigid = rigid_share(dimension, n) if rule.endswith("+a") else 1 / n
     r1, r2, _ = _rotation(dimension, fixed_angle(angle))

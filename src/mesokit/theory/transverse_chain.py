@@ -92,30 +92,23 @@ def transverse_correlation_chain(
         if np.abs(residues).max() < MEETING:
             result[here] = (np.exp(t[here][:, None] * poles) @ residues).real
         else:
+            # slower, but without the residues of two poles that meet
+            from scipy.linalg import expm
+
             matrix = _arrow(float(wave), viscosity, elasticity, stress_times)
-            result[here] = _exponential(matrix, t[here])
+            result[here] = [expm(matrix * delay)[0, 0] for delay in t[here]]
     return result
 
 
 def _arrow(k: float, viscosity: float, elasticity: float, stress_times: ArrayLike) -> Array:
     """The matrix A of `transverse_poles`."""
     positive(viscosity=viscosity, elasticity=elasticity)
-    tau, count = _distinct(checked_times(elasticity, stress_times))
+    tau = np.sort(checked_times(elasticity, stress_times))[::-1]
+    # times that differ, and how often each is there: those of a ring come in pairs
+    start = np.append(True, tau[1:] < tau[:-1] * (1 - 1e-12))
+    count = np.diff(np.append(np.flatnonzero(start), len(tau))).astype(float)
+    tau = tau[start]
     matrix = -np.diag(np.append(viscosity * k * k, 1 / tau))
     matrix[0, 1:] = -k * np.sqrt(elasticity * count)
     matrix[1:, 0] = k * np.sqrt(elasticity * count)
     return matrix
-
-
-def _exponential(matrix: Array, time: Array) -> Array:
-    """[exp(A t)]_00 without eigenvalues: slower, but nothing happens where two of them meet."""
-    from scipy.linalg import expm
-
-    return np.array([expm(matrix * t)[0, 0] for t in time])
-
-
-def _distinct(tau: Array) -> tuple[Array, Array]:
-    """Times that differ, and how often each is there (those of a ring come in pairs)."""
-    tau = np.sort(tau)[::-1]
-    start = np.append(True, tau[1:] < tau[:-1] * (1 - 1e-12))
-    return tau[start], np.diff(np.append(np.flatnonzero(start), len(tau))).astype(float)

@@ -70,12 +70,8 @@ def trimer_bond_length(
     >>> [round(trimer_bond_length(1, g, 8.7, 0.3), 6) for g in (0, 0.1, 1)]
     [1.224745, 1.665299, 9.553401]
     """
-    positive(
-        spring_constant=spring_constant,
-        viscosity=viscosity,
-        hydrodynamic_radius=hydrodynamic_radius,
-        kT=kT,
-    )
+    positive(spring_constant=spring_constant, viscosity=viscosity)
+    positive(hydrodynamic_radius=hydrodynamic_radius, kT=kT)
     not_negative(shear_rate=abs(shear_rate))
 
     def excess(length: float) -> float:

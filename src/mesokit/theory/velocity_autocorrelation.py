@@ -50,9 +50,7 @@ def vacf_tail(
     """
     dimension_two_or_three(dimension)
     positive(viscosity=viscosity, density=density, kT=kT, mass=mass)
-    t = np.asarray(time, dtype=float)
-    if np.any(t <= 0):
-        raise ValueError(f"time = {time!r}: expected above 0")
+    t = _after_zero(time)
     spread = 4 * math.pi * (viscosity + diffusion) * t
     return (dimension - 1) / dimension * kT / (density * mass) * spread ** (-dimension / 2)
 
@@ -81,9 +79,7 @@ def vacf_modes(
     if sides.shape not in ((2,), (3,)) or not np.all(sides > 0):
         raise ValueError(f"box = {box!r}: expected 2 or 3 sides above 0")
     positive(viscosity=viscosity, density=density, kT=kT, mass=mass)
-    t = np.asarray(time, dtype=float)
-    if np.any(t <= 0):
-        raise ValueError(f"time = {time!r}: expected above 0")
+    t = _after_zero(time)
     # the sum over a cubic lattice is a product of one sum an axis
     product = np.ones_like(t)
     for side in sides:
@@ -92,3 +88,10 @@ def vacf_modes(
         product = product * (1 + 2 * np.exp(-rate * t[..., None] * n**2).sum(axis=-1))
     d = len(sides)
     return (d - 1) / d * kT / (density * mass * float(np.prod(sides))) * (product - 1)
+
+
+def _after_zero(time: ArrayLike) -> Array:
+    t = np.asarray(time, dtype=float)
+    if np.any(t <= 0):
+        raise ValueError(f"time = {time!r}: expected above 0")
+    return t

@@ -1,16 +1,13 @@
 """Liquid water at 0.1 MPa between 0 and 100 degrees Celsius, in SI units."""
 
+from collections.abc import Sequence
+
 COLDEST, HOTTEST = 273.15, 373.15  # K
 _DENSITY = (999.83952, 16.945176, -7.9870401e-3, -46.170461e-6, 105.56302e-9, -280.54253e-12)
 _VISCOSITY = ((280.68, -1.9), (511.45, -7.7), (61.131, -19.6), (0.45903, -40.0))
-_SOUND = (
-    1402.38744,
-    5.03836171,
-    -5.81172916e-2,
-    3.34638117e-4,
-    -1.48259672e-6,
-    3.16585020e-9,
-)
+_SOUND = [
+    1402.38744, 5.03836171, -5.81172916e-2, 3.34638117e-4, -1.48259672e-6, 3.16585020e-9,
+]  # fmt: skip
 
 
 def water_density(temperature: float) -> float:
@@ -77,5 +74,5 @@ def _celsius(temperature: float) -> float:
     return temperature - COLDEST
 
 
-def _polynomial(coefficients: tuple[float, ...], x: float) -> float:
+def _polynomial(coefficients: Sequence[float], x: float) -> float:
     return sum(c * x**k for k, c in enumerate(coefficients))

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
-from mesokit.report.document.comparisons import lines_of
+from mesokit.report.document.tables import lines_of
 from mesokit.report.document.template import render
 from mesokit.seam.result import Result
 
@@ -25,16 +25,6 @@ def card(
     >>> "<b>box</b> empty" in card("box", "empty")
     True
     """
-    lines = lines_of(results)
-    facts = list(rows)
-    return render(
-        "card.html",
-        title=title,
-        words=words,
-        rows=facts,
-        lines=lines,
-        text=text,
-        fold=fold,
-        pretty=pretty,
-        numbers=numbers,
-    )
+    found = {"rows": list(rows), "lines": lines_of(results), "numbers": numbers}
+    how = {"fold": fold, "pretty": pretty}
+    return render("card.html", title=title, words=words, text=text, **found, **how)

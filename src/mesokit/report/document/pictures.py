@@ -1,14 +1,15 @@
-"""Figures and films as they stand inside a page."""
+"""Figures and films inside a page, and links to files beside it."""
 
 import base64
 import io
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
+from urllib.parse import quote
 
 from mesokit.case.amounts import size_text
 from mesokit.case.case import Case
-from mesokit.report.document.links import link_to
 from mesokit.seam.result import Result
 
 LARGEST_SVG = 250_000  # bytes; larger drawings are kept as PNG
@@ -18,7 +19,7 @@ TYPES = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif", ".mp
 
 
 class Picture(NamedTuple):
-    """A figure: what it is called, a data URI, and its caption."""
+    """The name, the data URI and the caption of a figure."""
 
     name: str
     source: str
@@ -26,7 +27,7 @@ class Picture(NamedTuple):
 
 
 class Reel(NamedTuple):
-    """A film: its file, its size in words, a link to it, and a data URI or nothing."""
+    """The file, size in words, link, and data URI or nothing of a film; `moving` if it is MP4."""
 
     name: str
     size: str
@@ -42,6 +43,19 @@ def embedded(data: bytes, ending: str) -> str:
     'data:image/svg+xml;base64,PHN2Zy8+'
     """
     return f"data:{TYPES[ending]};base64,{base64.b64encode(data).decode()}"
+
+
+def link_to(path: Path, page: Path) -> str:
+    """A link from a page to a file or folder, relative so that both can be moved together.
+
+    >>> link_to(Path("study/runs/a=1,b=2/seed 3"), Path("study/report.html"))
+    'runs/a=1,b=2/seed%203'
+    """
+    try:
+        relative = os.path.relpath(path, page.parent)
+    except ValueError:  # another drive of Windows: no relative path leads there
+        return path.resolve().as_uri()
+    return quote(Path(relative).as_posix(), safe="/=,+")
 
 
 def figures(results: Iterable[Result], case: Case) -> list[Picture]:
@@ -71,13 +85,10 @@ def drawn(figure: Any) -> str:
 
 
 def caption(result: Result) -> str:
-    """What a figure shows, how much is behind it, and what to mind."""
-    words = [result.about]
-    if result.theory and result.expected is not None:
-        words.append(f"theory: {result.theory}")
-    notes = [c.note for c in result.comparisons if c.lower_bound]
-    words += dict.fromkeys(notes)
-    return "; ".join(words) + "."
+    """The content of a figure, its theory, and notes of lower bounds."""
+    theory = [f"theory: {result.theory}"] if result.theory and result.expected is not None else []
+    notes = dict.fromkeys(c.note for c in result.comparisons if c.lower_bound)
+    return "; ".join([result.about, *theory, *notes]) + "."
 
 
 def pictures_of_flow(folder: Path, but: Iterable[str]) -> list[Picture]:
@@ -94,9 +105,8 @@ def films_of(folder: Path, page: Path, inline: bool) -> list[Reel]:
     """The films in the folder of a run, linked from the page, or inside it if they are small."""
     found = []
     for path in sorted([*folder.glob("*.mp4"), *folder.glob("*.gif")]):
-        size = path.stat().st_size
+        size, moving = path.stat().st_size, path.suffix == ".mp4"
         inside = inline and size <= LARGEST_FILM
         source = embedded(path.read_bytes(), path.suffix) if inside else ""
-        moving = path.suffix == ".mp4"
         found.append(Reel(path.name, size_text(size), link_to(path, page), source, moving))
     return found

@@ -33,12 +33,12 @@ def in_notebook() -> bool:
 
 
 class NotebookReporter(Reporter):
-    """Tell how a run goes by a bar below the cell of a notebook."""
+    """Progress of a run as a bar below the cell of a notebook."""
 
     shown: Any = None
 
     def has_bar(self) -> bool:
-        """The stream has none."""
+        """False: the bar is not in a stream."""
         return False
 
     def _open(self) -> None:
@@ -56,7 +56,7 @@ class NotebookReporter(Reporter):
         print(text)
 
     def _repr_html_(self) -> str:
-        """What a notebook asks for."""
+        """The bar in HTML, for notebooks."""
         return render("progress.html", task=self.task)
 
     def __repr__(self) -> str:

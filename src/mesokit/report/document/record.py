@@ -1,4 +1,4 @@
-"""What the record of a run says, as rows and sentences of a page."""
+"""The record of a run as rows and sentences of a page."""
 
 import shlex
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ PROGRAMS = ("mesokit", "__main__.py")  # by which the command line is called
 
 
 def when(text: str) -> str:
-    """A time of the record for people, who need no seconds."""
+    """A time of the record without its seconds."""
     return text[:16].replace("T", " ") + " UTC" * text.endswith("+00:00")
 
 
@@ -20,7 +20,12 @@ def origin_rows(record: Mapping[str, Any]) -> list[Row]:
     """Versions, machine and times, so far as they are on record."""
     versions = ", ".join(f"{name} {v}" for name, v in record.get("versions", {}).items())
     rows = [("versions", versions, "")] if versions else []
-    rows += _sources(record.get("sources") or {})
+    sources = record.get("sources") or {}
+    if sources.get("commit"):
+        changed = "changed since" * (sources["changed"] == "true")
+        rows.append(("commit", sources["commit"], changed))
+    if sources.get("digest"):
+        rows.append(("sources", f"sha256 {sources['digest']}", ""))
     for run in record.get("merged") or ():
         rows.append(("pooled from", str(run["run"]), f"seed {run['seed']}, to step {run['step']}"))
     of_each = ("seed", "threads", "started") if record.get("merged") else ()
@@ -37,16 +42,6 @@ def origin_rows(record: Mapping[str, Any]) -> list[Row]:
         program, *words = map(str, record["command"])
         name = "mesokit" if Path(program).name in PROGRAMS else Path(program).name
         rows.append(("command", shlex.join([name, *words]), ""))
-    return rows
-
-
-def _sources(record: Mapping[str, Any]) -> list[Row]:
-    """Which state of mesokit made the numbers."""
-    rows = []
-    if record.get("commit"):
-        rows.append(("commit", record["commit"], "changed since" * (record["changed"] == "true")))
-    if record.get("digest"):
-        rows.append(("sources", f"sha256 {record['digest']}", ""))
     return rows
 
 

@@ -9,10 +9,9 @@ from mesokit.errors import MesokitError
 from mesokit.io.atomic import write_text
 from mesokit.io.pooled import pooled_words
 from mesokit.io.run_directory import RunDirectory
-from mesokit.report.document.comparisons import lines_of
-from mesokit.report.document.conservation import changes
 from mesokit.report.document.pictures import figures, films_of, pictures_of_flow
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
+from mesokit.report.document.tables import changes, lines_of
 from mesokit.report.document.template import render
 from mesokit.report.finish.origin import as_text
 from mesokit.seam.method import Row, method_of, summary_of
@@ -27,7 +26,7 @@ ALWAYS = {"case": "Case", "origin": "Where it comes from", "repeat": "To repeat 
 
 
 class Files(Protocol):
-    """What a report asks of the files of a run, as `mesokit.open` gives them."""
+    """The files of a run, as `mesokit.open` returns them."""
 
     path: Path
 
@@ -56,20 +55,12 @@ def write_report(files: Files, path: str | Path | None = None, films: bool = Fal
 
     Parameters
     ----------
-    files : RunFiles
-        Of the run.
-    path : path, optional
-        The file to write, `report.html` in the folder of the run unless said.
-    films : bool, optional
-        Put small films of the folder into the page, which is then larger; else they are linked.
+    files: of the run.
+    path: the file to write, `report.html` in the folder of the run unless said.
+    films: put small films of the folder into the page, which is then larger; else they are linked.
 
-    Raises
-    ------
-    RunError
-        If the file cannot be written, or the data of the run are damaged.
+    Raises RunError if the file cannot be written, or the data of the run are damaged.
 
-    Examples
-    --------
     >>> import tempfile, mesokit
     >>> from mesokit import Box, Conservation, Run, Simulation
     >>> folder = Path(tempfile.mkdtemp()) / "run"
@@ -86,24 +77,25 @@ def write_report(files: Files, path: str | Path | None = None, films: bool = Fal
 def page(files: Files, path: Path, films: bool = False) -> str:
     """The report of a run as HTML, for a file `path`."""
     case, record = files.case, files.provenance
-    results = list(files.so_far().values())
-    names = [result.name for result in results]
+    name, results = files.path.resolve().name, list(files.so_far().values())
+    drawn = [*figures(results, case), *pictures_of_flow(files.path, [r.name for r in results])]
     rows, warnings = _derived(case)
+    convert = method_of(case).si if case.units is not None else None
     sections: dict[str, Any] = {
         "warnings": warnings,
         "lines": lines_of(results),
-        "figures": [*figures(results, case), *pictures_of_flow(files.path, names)],
+        "figures": drawn,
         "films": films_of(files.path, path, films),
         "conservation": changes(results),
         "derived": rows,
-        "si": _si(case),
+        "si": "" if convert is None else str(convert(case)),
     }
     ids = {"lines": "comparisons"}
     contents = [(ids.get(k, k), words) for k, words in HEADINGS.items() if sections[k]]
     return render(
         "run.html",
-        title=case.title or files.path.resolve().name,
-        folder=files.path.resolve().name,
+        title=case.title or name,
+        folder=name,
         lead=_lead(case, record),
         state="" if files.ended else files.state,
         contents=[*contents, *ALWAYS.items()],
@@ -119,7 +111,7 @@ def page(files: Files, path: Path, films: bool = False) -> str:
 
 
 def _lead(case: Case, record: Mapping[str, Any]) -> str:
-    """What was simulated, in a line."""
+    """The case in a line: method, size, particles, steps and seed."""
     size = " x ".join(f"{length:g}" for length in case.box.size)
     particles = sum(group.number for group in case.groups)
     merged, warmup = record.get("merged") or (), case.run.warmup
@@ -136,7 +128,7 @@ def _lead(case: Case, record: Mapping[str, Any]) -> str:
 
 
 def _derived(case: Case) -> tuple[list[Row], tuple[str, ...]]:
-    """What `mesokit check` says of the case, but for the cost, which is known by now."""
+    """Derived numbers and warnings of a case, as in `mesokit check`, without estimated costs."""
     try:
         summary = summary_of(case, None)
     except MesokitError:  # a file that the start was made from may be gone
@@ -144,23 +136,16 @@ def _derived(case: Case) -> tuple[list[Row], tuple[str, ...]]:
     return [row for row in summary.rows if not row[2].startswith("estimate")], summary.warnings
 
 
-def _si(case: Case) -> str:
-    convert = method_of(case).si
-    return str(convert(case)) if case.units is not None and convert is not None else ""
-
-
 def _repeat(case: Case, record: Mapping[str, Any]) -> str:
     """Commands that run the case again, and write this page of them."""
     commands = [install(record)]
-    folders = []
-    for run in record.get("merged") or ():
-        folders.append(f"again-{run['seed']}")
+    merged = record.get("merged") or ()
+    for run in merged:
         longer = run["step"] - case.run.warmup
         steps = f" --set run.steps={longer}" * (longer != case.run.steps)
         seed = f"--set run.seed={run['seed']}{steps}"
-        commands.append(f"mesokit run case.toml {seed} --output {folders[-1]}")
-    if folders:
-        commands.append(f"mesokit merge {' '.join(folders)} --output again")
-    else:
-        commands.append("mesokit run case.toml --output again")
+        commands.append(f"mesokit run case.toml {seed} --output again-{run['seed']}")
+    folders = " ".join(f"again-{run['seed']}" for run in merged)
+    how = f"merge {folders}" if merged else "run case.toml"
+    commands.append(f"mesokit {how} --output again")
     return "\n".join([*commands, "mesokit report again"])

@@ -1,13 +1,8 @@
 """The templates of this folder, filled."""
 
-from __future__ import annotations
-
 import functools
 import re
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
+from typing import Any
 
 
 def render(template: str, **values: Any) -> str:
@@ -16,7 +11,7 @@ def render(template: str, **values: Any) -> str:
 
 
 @functools.cache
-def _templates() -> Environment:
+def _templates() -> Any:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     templates = Environment(

@@ -14,16 +14,8 @@ def entries(panels: Iterable[Any]) -> dict[str, Any]:
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
             found.setdefault(label, handle)
     # Matplotlib lists lines before points with error bars, which are tuples
-    order = sorted(found, key=lambda label: (_of_theory(label), not _is_tuple(found[label])))
+    order = sorted(found, key=lambda name: ("theory" in name, not isinstance(found[name], tuple)))
     return {label: found[label] for label in order}
-
-
-def _of_theory(label: str) -> bool:
-    return "theory" in label
-
-
-def _is_tuple(handle: Any) -> bool:
-    return isinstance(handle, tuple)
 
 
 def along_rows(found: Mapping[str, Any], columns: int) -> dict[str, Any]:

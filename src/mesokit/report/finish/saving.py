@@ -29,14 +29,10 @@ def save_figure(figure: Any, path: str | Path) -> Path:
         known = ", ".join(sorted(figure.canvas.get_supported_filetypes()))
         raise RunError(f"{path}: no figure of that kind; choose one of {known}")
     origin: Origin | None = getattr(figure, "origin", None)
+    about = None if origin is None else origin.metadata(kind) or None
     with mpl.rc_context(STYLE), replacing(path) as temporary, _foot(figure, origin) as options:
-        figure.savefig(temporary, format=kind, **options, **_metadata(origin, kind))
+        figure.savefig(temporary, format=kind, metadata=about, **options)
     return path
-
-
-def _metadata(origin: Origin | None, kind: str) -> dict[str, Any]:
-    found = {} if origin is None else origin.metadata(kind)
-    return {"metadata": found} if found else {}
 
 
 @contextlib.contextmanager

@@ -19,17 +19,19 @@ def add(ax: Any, draw: Callable[[], None], label: str = "", colour: str = "") ->
     ----------
     ax: the axes.
     draw: draws the result into them, in the first colour.
-    label: what its data are called in the legend, instead of "measured".
+    label: name of its data in the legend, instead of "measured".
     colour: of its data; the next of the palette unless said. A drawing of several data sets keeps
         its colours unless one is said.
     """
     number = _NUMBER.get(ax, 0)
     _NUMBER[ax] = number + 1
     before, earlier = set(ax.get_children()), set(ax.get_legend_handles_labels()[1])
-    limits = (ax.get_xlim(), ax.get_ylim()) if number else None
+    limits = ax.get_xlim(), ax.get_ylim()
     draw()
-    if limits is not None:
-        _reach(ax, *limits)
+    if number:  # show all that was and is drawn
+        now = ax.get_xlim(), ax.get_ylim()
+        x, y = ((min(a[0], b[0]), max(a[1], b[1])) for a, b in zip(limits, now, strict=True))
+        ax.set(xlim=x, ylim=y)
     entries = zip(*ax.get_legend_handles_labels(), strict=True)
     new = [(handle, text) for handle, text in entries if not _known(handle, before)]
     single = any(text.startswith(MEASURED) for _, text in new)
@@ -46,11 +48,9 @@ def add(ax: Any, draw: Callable[[], None], label: str = "", colour: str = "") ->
     for handle, text in new:
         if text.startswith(THEORY) and text in earlier:
             handle.set_label("_again")
-    next_one = PALETTE[number % len(PALETTE)] if single and (number or label) else ""
-    chosen = colour or next_one
-    if chosen:
-        for artist in set(ax.get_children()) - before:
-            _paint(artist, chosen)
+    colour = colour or (PALETTE[number % len(PALETTE)] if single and (number or label) else "")
+    for artist in set(ax.get_children()) - before if colour else ():
+        _paint(artist, colour)
     _renew_legend(ax)
 
 
@@ -62,7 +62,7 @@ def _known(handle: Any, before: set[Any]) -> bool:
 
 
 def _named(text: str, label: str, single: bool) -> str:
-    """The label of an entry of a drawing that is called `label`."""
+    """The text of an entry of the legend, with the name of its drawing."""
     if text.startswith(MEASURED):
         return label
     if text.startswith(THEORY) and single:
@@ -91,15 +91,6 @@ def _paint(artist: Any, colour: str) -> None:
         artist.set_color(colour)
 
 
-def _reach(ax: Any, x: tuple[float, float], y: tuple[float, float]) -> None:
-    """Let axes show what they showed, and what they show now."""
-    for (low, high), (least, most), put in (
-        (x, ax.get_xlim(), ax.set_xlim),
-        (y, ax.get_ylim(), ax.set_ylim),
-    ):
-        put(min(low, least), max(high, most))
-
-
 def _renew_legend(ax: Any) -> None:
     """The legend again, where it was, with the names that there are now."""
     old = ax.get_legend()
@@ -107,11 +98,5 @@ def _renew_legend(ax: Any) -> None:
         return
     place, anchor = old._loc, old.get_bbox_to_anchor().transformed(ax.transAxes.inverted())
     shown = along_rows(entries([ax]), old._ncols)
-    ax.legend(
-        shown.values(),
-        shown,
-        loc=place,
-        bbox_to_anchor=(anchor.x0, anchor.y0),
-        ncols=old._ncols,
-        borderaxespad=old.borderaxespad,
-    )
+    look = {"ncols": old._ncols, "borderaxespad": old.borderaxespad}
+    ax.legend(shown.values(), shown, loc=place, bbox_to_anchor=(anchor.x0, anchor.y0), **look)

@@ -3,8 +3,8 @@
 from mesokit.report.flow.film import Film, animate
 from mesokit.report.flow.kinds import KINDS, usual
 from mesokit.report.flow.layout import page_width
+from mesokit.report.flow.region import CHOICES
 from mesokit.report.flow.state import State
 from mesokit.report.flow.still import picture
-from mesokit.report.flow.view import CHOICES
 
 __all__ = ["CHOICES", "KINDS", "Film", "State", "animate", "page_width", "picture", "usual"]

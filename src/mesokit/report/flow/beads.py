@@ -11,6 +11,7 @@ from mesokit.case.case import Case
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.flow.data import Array, Beads
 from mesokit.report.flow.region import Region
+from mesokit.report.flow.scale import points_of
 from mesokit.report.flow.state import State
 from mesokit.report.style import COLOURS
 from mesokit.seam.method import method_of
@@ -56,13 +57,11 @@ class BeadFrames:
         edges = np.diag(np.where(np.isinf(self.periods), 0.0, self.periods))
         edges[1, 0] = slid
         repeats = self._repeats(whole, edges)
-        places = whole[:, self.columns]
-        third = [k for k in range(len(self.case.box.size)) if k not in self.columns]
         near = np.ones(len(whole))
-        if third:
-            near = position[:, third[0]] / float(self.case.box.size[third[0]])
-        how = self.diameters, self.called
-        return Beads(places, self.kinds, self.bonds, *how, repeats, now, self.molecules, near)
+        for third in {*range(len(self.case.box.size))} - {*self.columns}:
+            near = position[:, third] / float(self.case.box.size[third])
+        how = self.kinds, self.bonds, self.diameters, self.called
+        return Beads(whole[:, self.columns], *how, repeats, now, self.molecules, near)
 
     @cached_property
     def molecules(self) -> NDArray[np.int64]:
@@ -98,9 +97,8 @@ class BeadFrames:
             low, high = (np.floor(f(whole[:, axis]) / period) for f in (np.min, np.max))
             more = axis == 0 and bool(edges[1, 0])  # images above and below lie aside
             counts.append(range(-int(high) - more, -int(low) + more + 1))
-        shifts = {tuple((np.array(n) @ edges)[self.columns].tolist()) for n in
-                  itertools.product(*counts)}  # fmt: skip
-        return tuple(sorted(shifts))
+        every = (np.array(n) @ edges for n in itertools.product(*counts))
+        return tuple(sorted({tuple(shift[self.columns].tolist()) for shift in every}))
 
 
 def frames_of(
@@ -125,10 +123,8 @@ def key(figure: Any, beads: Beads) -> None:
     """A legend of the kinds, at the lower right of the figure."""
     from matplotlib.lines import Line2D
 
-    marks = []
-    for kind in np.unique(beads.kinds):
-        colour, marker = look(int(kind), 0, False)
-        marks.append(Line2D([], [], color=colour, marker=marker, ls="", ms=5))
+    looks = [look(int(kind), 0, False) for kind in np.unique(beads.kinds)]
+    marks = [Line2D([], [], color=colour, marker=marker, ls="", ms=5) for colour, marker in looks]
     where = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.0), "ncols": len(marks)}
     figure.legend(marks, beads.names, fontsize=8, borderaxespad=0.1, frameon=False, **where)
 
@@ -139,10 +135,9 @@ def draw(ax: Any, beads: Beads, region: Region) -> None:
     In 3D those at the back come first, and are paler.
     """
     from matplotlib.collections import LineCollection
+    from matplotlib.colors import to_rgb
 
-    box = ax.get_position()
-    points = 72.0 * box.width * ax.figure.get_size_inches()[0] / np.ptp(ax.get_xlim())
-    only = not beads.names
+    points, only = points_of(ax), not beads.names
     layers = np.minimum((beads.nearness * LAYERS).astype(int), LAYERS - 1)
     groups = np.stack([layers, beads.kinds, beads.molecules % len(COLOURS) * only], axis=1)
     for shift in beads.repeats:
@@ -152,27 +147,13 @@ def draw(ax: Any, beads: Beads, region: Region) -> None:
         for group in np.unique(groups, axis=0):  # from the back to the front
             layer, kind, molecule = (int(number) for number in group)
             colour, marker = look(kind, molecule, only)
-            colour = _paler(colour, PALE * (1 - (layer + 1) / LAYERS))
+            part = PALE * (1 - (layer + 1) / LAYERS)  # of white
+            shade = tuple(x + (1 - x) * part for x in to_rgb(colour)) if part > 0 else colour
             chosen = (groups == group).all(axis=1)
             own, size = inside & chosen, max(SMALLEST, float(beads.diameters[kind]) * points)
-            bonds = places[ends[chosen[ends[:, 0]]]]
-            ax.add_collection(
-                LineCollection(list(bonds), colors=colour, linewidths=BOND * size, zorder=ABOVE),
-                autolim=False,
-            )
-            ax.plot(
-                *places[own].T,
-                marker,
-                color=colour,
-                markersize=size,
-                markeredgewidth=min(EDGE * size / 2, RIM),
-                markeredgecolor="white",
-                zorder=ABOVE,
-            )
-
-
-def _paler(colour: str, part: float) -> Any:
-    """The colour with a part of it replaced by white."""
-    from matplotlib.colors import to_rgb
-
-    return colour if part <= 0 else tuple(x + (1 - x) * part for x in to_rgb(colour))
+            bonds = list(places[ends[chosen[ends[:, 0]]]])
+            lines = LineCollection(bonds, colors=shade, linewidths=BOND * size, zorder=ABOVE)
+            ax.add_collection(lines, autolim=False)
+            style: Any = {"color": shade, "ms": size, "mec": "white"}
+            rim = min(EDGE * size / 2, RIM)
+            ax.plot(*places[own].T, marker, mew=rim, zorder=ABOVE, **style)

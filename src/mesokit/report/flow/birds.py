@@ -1,13 +1,14 @@
 """Birds as triangles that point along their headings, in a colour for each direction."""
 
 import functools
+import math
 from typing import Any
 
 import numpy as np
 
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.region import Region
-from mesokit.report.flow.scale import Scale
+from mesokit.report.flow.scale import Scale, inches_of
 
 NEEDS = "headings"
 TITLE = "birds"
@@ -26,7 +27,7 @@ def reach(flow: Flow, region: Region) -> float:
 
 
 def scale(flow: Flow, reach: float) -> Scale:
-    """Directions: ever lighter from those that point down to those against the first axis."""
+    """Colours of directions."""
     return Scale(-reach, reach, colours(), r"heading / $\pi$")
 
 
@@ -35,54 +36,31 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     assert flow.particles is not None and flow.headings is not None
     inside = region.holds(flow.particles)
     places, headings = flow.particles[inside], flow.headings[inside]
-    long = length(ax, len(places)) / 72.0
+    area = 72.0**2 * math.prod(inches_of(ax))  # square points
+    usual = np.sqrt(COVERED * area / max(len(places), 1) / (0.5 * SLIM))
+    long = float(np.clip(usual, SHORTEST, LONGEST)) / 72.0
     size = np.linalg.norm(headings, axis=1, keepdims=True)
     unit = headings / np.where(size > 0, size, 1.0)
     turned = np.arctan2(unit[:, 1], unit[:, 0]) / np.pi
     width = SLIM * long
-    ax.quiver(
-        places[:, 0],
-        places[:, 1],
-        long * unit[:, 0],
-        long * unit[:, 1],
-        color=scale(flow, reach).mappable().to_rgba(turned),
-        angles="xy",
-        scale_units="inches",
-        scale=1.0,
-        units="inches",
-        width=0.2 * width,
-        headwidth=5.0,
-        headlength=long / (0.2 * width),
-        headaxislength=0.8 * long / (0.2 * width),
-        minlength=0.0,
-        minshaft=1.0,
-        pivot="mid",
-        rasterized=len(places) > MANY,
-        zorder=2,
-    )
-
-
-def length(ax: Any, number: int) -> float:
-    """Of a bird, in points."""
-    box = ax.get_position()
-    width, height = ax.figure.get_size_inches()
-    area = 72.0**2 * box.width * width * box.height * height
-    return float(
-        np.clip(np.sqrt(COVERED * area / max(number, 1) / (0.5 * SLIM)), SHORTEST, LONGEST)
-    )
+    units = {"angles": "xy", "scale_units": "inches", "scale": 1.0, "units": "inches"}
+    shaft = {"width": 0.2 * width, "minlength": 0.0, "minshaft": 1.0, "pivot": "mid"}
+    head = {"headlength": long / (0.2 * width), "headaxislength": 0.8 * long / (0.2 * width)}
+    look = {"color": scale(flow, reach).mappable().to_rgba(turned), "zorder": 2}
+    look |= {"headwidth": 5.0, "rasterized": len(places) > MANY}
+    ax.quiver(*places.T, *long * unit.T, **units, **shaft, **head, **look)
 
 
 @functools.cache
 def colours() -> Any:
-    """A cyclic map: hue goes round once; lightness rises most of the way and then falls, so that
-    grey tells directions apart, those to either side of an axis too."""
+    """A cyclic map: the hue turns once. Lightness rises over most of the turn and then falls, so
+    that directions differ in grey too."""
     from matplotlib.colors import ListedColormap
 
     angle = np.linspace(-np.pi, np.pi, STEPS)
     lightness = np.interp(angle, [-np.pi, BACK - np.pi, np.pi], [LIGHT, DARK, LIGHT])
-    return ListedColormap(
-        _from_lab(lightness, CHROMA * np.cos(angle + 5.3), CHROMA * np.sin(angle + 5.3)), "headings"
-    )
+    a, b = CHROMA * np.cos(angle + 5.3), CHROMA * np.sin(angle + 5.3)
+    return ListedColormap(_from_lab(lightness, a, b), "headings")
 
 
 def _from_lab(lightness: Array, a: Array, b: Array) -> Array:

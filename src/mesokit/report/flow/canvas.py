@@ -1,4 +1,4 @@
-"""Panels side by side: what stays, and what changes from one frame of a film to the next."""
+"""Panels side by side: parts that stay, and parts drawn anew in each frame of a film."""
 
 import textwrap
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ class Canvas:
     panels: what is drawn.
     flows: one for each panel, of the grids and axes that will be drawn.
     reaches: the largest number that each panel shows.
-    region: what is seen of the box.
+    region: part of the box in view.
     section: through its solids.
     stamp: whether a time is written above.
     notes: written below.
@@ -85,9 +85,8 @@ class Canvas:
 
     def _frame(self, ax: Any, number: int, names: tuple[str, str]) -> None:
         """Limits, labels at the left and lower edge of the figure, and a title among several."""
-        ax.set_xlim(self.view.low[0], self.view.high[0])
-        ax.set_ylim(self.view.low[1], self.view.high[1])
-        ax.set_aspect("equal")
+        (left, low), (right, high) = self.view.low, self.view.high
+        ax.set(xlim=(left, right), ylim=(low, high), aspect="equal")
         box = self.place.panels[number]
         for axis, room in (("x", box.width / 0.45), ("y", box.height / 0.3)):
             ax.locator_params(axis=axis, nbins=min(6, max(1, int(room))), steps=[1, 2, 5, 10])
@@ -115,8 +114,7 @@ class Canvas:
     def _bar(self, box: Box, scale: Scale) -> None:
         ax = self._add(box)
         if not self.place.flat:
-            bar = self.figure.colorbar(scale.mappable(), cax=ax, label=scale.label)
-            _ticks(bar, scale, 6)
+            _ticks(self.figure.colorbar(scale.mappable(), cax=ax, label=scale.label), scale, 6)
             return
         bar = self.figure.colorbar(scale.mappable(), cax=ax, orientation="horizontal")
         ax.xaxis.set_ticks_position("top")
@@ -142,7 +140,7 @@ class Canvas:
 
 
 def _plates(flow: Flow) -> tuple[Any, ...]:
-    """Those that move, and are drawn anew in each frame."""
+    """Plates that move, and are drawn anew in each frame."""
     return () if flow.spheres is None else flow.spheres.plates
 
 

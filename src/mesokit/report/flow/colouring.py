@@ -1,4 +1,4 @@
-"""What the colours of disks and spheres mean. A new one is a function and a row of `COLOURS`."""
+"""Meanings of the colours of disks and spheres. A new one is a function and a row of `COLOURS`."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -65,7 +65,7 @@ def _usual(now: Frame) -> float:
 
 
 def _told(now: Frame) -> str:
-    """The speed that relative ones are of."""
+    """The unit of relative speeds, in words."""
     return f"rms speed ${rounded(_usual(now), 2)}$ {symbols('a/tau')}"
 
 
@@ -88,28 +88,17 @@ def neighbours(now: Frame) -> Array:
     tree = cKDTree(places, boxsize=periods)
     pairs = tree.query_pairs(2 * REACH * float(radii.max()), output_type="ndarray")
     separation = places[pairs[:, 0]] - places[pairs[:, 1]]
-    separation -= np.where(periods > 0, periods, 0.0) * np.rint(
-        separation / np.where(periods > 0, periods, 1.0)
-    )
+    separation -= periods * np.rint(separation / np.where(periods > 0, periods, 1.0))
     near = np.linalg.norm(separation, axis=1) < REACH * radii[pairs].sum(axis=1)
     return np.bincount(pairs[near].ravel(), minlength=len(places)).astype(float)
 
 
 def hexatic(now: Frame) -> Array:
     """Size of psi_6, by Voronoi neighbours: 1 in a triangular lattice."""
-    size = np.array(now.case.box.size, float)
-    if (
-        len(size) != 2
-        or now.case.box.sheared
-        or method_of(now.case).enclosure.closed_axes(now.case)
-    ):
+    size, closed = np.array(now.case.box.size, float), method_of(now.case).enclosure.closed_axes
+    if len(size) != 2 or now.case.box.sheared or closed(now.case):
         raise CaseError("colour = 'psi6': expected disks in a periodic 2D box without shear")
     return np.abs(psi_6(np.asarray(now.fields["position"], float), size))
-
-
-def kind(now: Frame) -> Array:
-    """Number of the kind, from 0."""
-    return now.kinds.astype(float)
 
 
 def _speeds(case: Case, reach: float) -> Scale:
@@ -121,16 +110,11 @@ def _decades(case: Case, reach: float) -> Scale:
     return Scale(10.0**-DECADES * reach, reach, "viridis", label, logarithmic=True)
 
 
-def _relative(case: Case, reach: float) -> Scale:
-    return Scale(0.0, reach, "viridis", "speed / rms speed of the frame")
-
-
 def _spins(case: Case, reach: float) -> Scale:
     if case.box.dimension == 3:
         return Scale(0.0, reach, "viridis", labelled("angular speed", "1/tau"))
-    return Scale(
-        -reach, reach, "RdBu_r", labelled(r"angular velocity ($\cdot$ > 0, $\times$ < 0)", "1/tau")
-    )
+    label = r"angular velocity ($\cdot$ > 0, $\times$ < 0)"
+    return Scale(-reach, reach, "RdBu_r", labelled(label, "1/tau"))
 
 
 def _counts(case: Case, reach: float) -> Scale:
@@ -140,18 +124,11 @@ def _counts(case: Case, reach: float) -> Scale:
     return _steps("viridis", [*names[:-1], names[-1] + "+" * (most == MOST)], label)
 
 
-def _order(case: Case, reach: float) -> Scale:
-    return Scale(0.0, 1.0, "viridis", r"$|\psi_6|$")
-
-
 def _kinds(case: Case, reach: float) -> Scale:
     from matplotlib.colors import ListedColormap
 
-    names = [
-        kind.name or f"kind {number}"
-        for group in case.groups
-        for number, kind in enumerate(group.kinds, start=1)
-    ]
+    kinds = (each for group in case.groups for each in enumerate(group.kinds, start=1))
+    names = [kind.name or f"kind {number}" for number, kind in kinds]
     chosen = [style.COLOURS[k % len(style.COLOURS)] for k in range(len(names))]
     return _steps(ListedColormap(chosen), names, "")
 
@@ -169,11 +146,18 @@ def _steps(colours: Any, names: list[str], label: str) -> Scale:
 COLOURS: dict[str, Colouring] = {
     "speed": Colouring(speed, _speeds, ("velocity",)),
     "log-speed": Colouring(speed, _decades, ("velocity",)),
-    "relative-speed": Colouring(relative, _relative, ("velocity",), tells=_told),
+    "relative-speed": Colouring(
+        relative,
+        lambda case, reach: Scale(0.0, reach, "viridis", "speed / rms speed of the frame"),
+        ("velocity",),
+        tells=_told,
+    ),
     "spin": Colouring(spin, _spins, ("spin",)),
     "neighbours": Colouring(neighbours, _counts, all=True, counted=True),
-    "psi6": Colouring(hexatic, _order, all=True),
-    "kind": Colouring(kind, _kinds, counted=True),
+    "psi6": Colouring(
+        hexatic, lambda case, reach: Scale(0.0, 1.0, "viridis", r"$|\psi_6|$"), all=True
+    ),
+    "kind": Colouring(lambda now: now.kinds.astype(float), _kinds, counted=True),
 }
 
 
@@ -194,15 +178,12 @@ def chosen(case: Case, reader: TrajectoryReader | State, colour: str | None) -> 
     Raises CaseError for an unknown one, RunError where the trajectory lacks what it needs.
     """
     if colour is None:
-        several = len(np.unique(reader.species)) > 1
-        colour = "kind" if several else None
         if "velocity" in reader.fields:
-            colour = "speed"
-        return None if colour is None else COLOURS[colour]
+            return COLOURS["speed"]
+        return COLOURS["kind"] if len(np.unique(reader.species)) > 1 else None
     if colour not in COLOURS:
-        known = list(COLOURS)
-        near = nearest(str(colour), known)
-        raise CaseError(f"colour = {show(colour)}: expected {one_of(known)}{near}")
+        near = nearest(str(colour), list(COLOURS))
+        raise CaseError(f"colour = {show(colour)}: expected {one_of(list(COLOURS))}{near}")
     found = COLOURS[colour]
     for field in found.needs:
         if field not in reader.fields:

@@ -4,11 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.report.flow.data import Flow
+from mesokit.report.flow.data import Array, Flow, Spheres
 from mesokit.report.flow.region import Region
-from mesokit.report.flow.scale import Scale, reach_of
+from mesokit.report.flow.scale import Scale, inches_of, points_of, reach_of
 from mesokit.report.flow.shaded import Balls, shaded
-from mesokit.report.flow.shown import Array, Spheres
 
 NEEDS = "spheres"
 TITLE = "spheres"
@@ -22,24 +21,26 @@ DPI = 200  # of an image of spheres, as figures are saved
 
 
 def reach(flow: Flow, region: Region) -> float:
-    """The largest number that colours have to show of those in the region."""
+    """The largest number of a sphere in the region."""
     spheres = _of(flow)
     values = spheres.values[region.holds(spheres.places)]
     return float(values.max(initial=1.0)) if spheres.counted else reach_of(values)
 
 
 def scale(flow: Flow, reach: float) -> Scale | None:
-    """What the colours mean; none where all are alike."""
+    """The scale of the numbers; none where all spheres have one colour."""
     spheres = _of(flow)
     return None if spheres.scale is None else spheres.scale(reach)
 
 
 def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
-    """Draw those that can be seen, also what comes in over the edges of a periodic box."""
+    """Draw the spheres in view, images over the edges of a periodic box included."""
+    from matplotlib.colors import to_rgb
+
     spheres, colours = _of(flow), scale(flow, reach)
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     rows, places = spheres.seen((left, low), (right, high))
-    fills: Any = np.tile(_rgb(PLAIN), (len(rows), 1))
+    fills: Any = np.tile(to_rgb(PLAIN), (len(rows), 1))
     if colours is not None:
         fills = colours.mappable().to_rgba(spheres.values[rows])[:, :3]
     if spheres.depth is None:
@@ -48,9 +49,7 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
             _turning(ax, places, spheres.diameters[rows], spheres.values[rows] / reach)
         return
     balls = Balls(places, spheres.depth[rows], 0.5 * spheres.diameters[rows], fills, spheres.room)
-    box = ax.get_position()
-    inches = box.width * ax.figure.get_size_inches()[0]
-    dots = inches * DPI / (right - left)
+    dots = inches_of(ax)[0] * DPI / (right - left)
     image = shaded(balls, (left, low), (right, high), dots)
     ax.imshow(image, origin="lower", extent=(left, right, low, high), zorder=2)
 
@@ -64,46 +63,21 @@ def _flat(ax: Any, places: Array, diameters: Array, fills: Any) -> None:
     """Disks in units of the axes, with edges where these would not hide them."""
     from matplotlib.collections import EllipseCollection
 
-    size = _points(ax) * float(diameters.mean()) if len(diameters) else 0.0
-    ax.add_collection(
-        EllipseCollection(
-            diameters,
-            diameters,
-            np.zeros(len(diameters)),
-            units="xy",
-            offsets=places,
-            offset_transform=ax.transData,
-            facecolors=fills,
-            edgecolors="black",
-            linewidths=min(EDGE * size, RIM) if size >= EDGED else 0.0,
-            rasterized=len(places) > MANY,
-            zorder=2,
-        ),
-        autolim=False,
-    )
+    size = points_of(ax) * float(diameters.mean()) if len(diameters) else 0.0
+    look: Any = {"units": "xy", "offsets": places, "offset_transform": ax.transData}
+    look |= {"facecolors": fills, "edgecolors": "black", "rasterized": len(places) > MANY}
+    rim, angles = min(EDGE * size, RIM) if size >= EDGED else 0.0, np.zeros(len(diameters))
+    disks = EllipseCollection(diameters, diameters, angles, linewidths=rim, zorder=2, **look)
+    ax.add_collection(disks, autolim=False)
 
 
 def _turning(ax: Any, places: Array, diameters: Array, turning: Array) -> None:
-    """A dot on disks that turn counterclockwise, a cross on others: in grey colours look alike.
+    """Mark disks that turn counterclockwise by a dot and others by a cross, for pictures in grey.
 
-    Those that turn by less than a tenth of the scale have neither.
+    Disks that turn by less than a tenth of the scale have no mark.
     """
-    if not len(places):
-        return
-    size = _points(ax) * float(diameters.mean())
+    size = points_of(ax) * float(diameters.mean()) if len(places) else 0.0
     if size < SIGNED:
         return
     for marker, which in ((".", turning > 0.1), ("x", turning < -0.1)):
         ax.plot(*places[which].T, marker, color="black", ms=MARK * size, mew=0.05 * size, zorder=3)
-
-
-def _points(ax: Any) -> float:
-    """Points of a length of 1."""
-    width = ax.get_position().width * ax.figure.get_size_inches()[0]
-    return float(72.0 * width / np.ptp(ax.get_xlim()))
-
-
-def _rgb(colour: str) -> Any:
-    from matplotlib.colors import to_rgb
-
-    return to_rgb(colour)

@@ -28,16 +28,9 @@ def mp4(path: Path, pictures: Iterator[Pixels], fps: float, about: About) -> Non
     pictures = chain([first], pictures)
     height, width = (2 * (side // 2) for side in first.shape[:2])
     entries = [word for item in about.items() for word in ("-metadata", "=".join(item))]
-    writer = write_frames(
-        path,
-        (width, height),
-        fps=fps,
-        codec="libx264",
-        quality=QUALITY,
-        macro_block_size=1,
-        ffmpeg_log_level="quiet",
-        output_params=["-f", "mp4", "-movflags", "+faststart", *entries],
-    )
+    how: dict[str, Any] = {"codec": "libx264", "quality": QUALITY, "macro_block_size": 1}
+    how["output_params"] = ["-f", "mp4", "-movflags", "+faststart", *entries]
+    writer = write_frames(path, (width, height), fps=fps, ffmpeg_log_level="quiet", **how)
     count = 0
     try:
         writer.send(None)

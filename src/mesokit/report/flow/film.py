@@ -24,10 +24,9 @@ from mesokit.report.flow.colouring import in_film
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
 from mesokit.report.flow.noise import averaged, note, smooth, smoothing
-from mesokit.report.flow.region import Region, frames_in, region_of
+from mesokit.report.flow.region import Region, View, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, Source, choose_one, sources
-from mesokit.report.flow.view import View
 from mesokit.report.progress import FilmReporter, Reporter
 from mesokit.seam.in_units import of_case
 
@@ -54,7 +53,7 @@ class Film:
         return os.fspath(self.path)
 
     def _repr_html_(self) -> str:
-        """What a notebook asks for: the film itself."""
+        """The film itself, for notebooks."""
         data = base64.b64encode(self.path.read_bytes()).decode()
         if self.path.suffix.lower() == ".gif":
             return f'<img src="data:image/gif;base64,{data}">'
@@ -82,7 +81,7 @@ def animate(
     kind: as for `picture`; unless said the first of these for which the run has kept frames: that
         of the method, such as "disks", "speed", "density", "particles".
     fps: frames shown per second.
-    progress: what tells how it goes (nothing does unless said).
+    progress: reporter of the frames drawn (none unless said).
     run: its name, for the line below the film and the metadata of the file.
     choices: `region`, `window`, `axes`, `at` and `colour`, as for `picture`; `average`, how many
         frames, one after another, each picture of a flow is the mean of: unless said as few as lift
@@ -155,7 +154,7 @@ def _averaged(
     frames: NDArray[np.int64],
     region: Region,
 ) -> int:
-    """How many frames each picture is the mean of. Raises CaseError for a number that cannot be."""
+    """The number of frames whose mean each picture shows. Raises CaseError for a wrong one."""
     if all(panel.NEEDS in AT_ONCE for panel in panels):
         if given not in (None, 1):
             raise CaseError(f"average = {show(given)}: particles are shown as they are at one time")

@@ -34,10 +34,8 @@ class Nodes(NamedTuple):
         first = np.array([self.x[0], self.y[0]])
         spacing = np.array([self.x[1], self.y[1]]) - first
         index = ((places - first) / spacing).T
-        return np.stack(
-            [map_coordinates(self.velocity[..., k], index, order=1, cval=np.nan) for k in range(2)],
-            axis=1,
-        )
+        parts = (self.velocity[..., k] for k in range(2))
+        return np.stack([map_coordinates(v, index, order=1, cval=np.nan) for v in parts], axis=1)
 
 
 def lines(nodes: Nodes, low: Array, high: Array, distance: float) -> list[Array]:

@@ -6,25 +6,16 @@ from typing import Any, Protocol
 from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
-from mesokit.report.flow import (
-    birds,
-    density,
-    disks,
-    particles,
-    quiver,
-    sites,
-    speed,
-    streamlines,
-    vorticity,
-)
+from mesokit.report.flow import birds, disks, particles, quiver, sites, streamlines
 from mesokit.report.flow.data import Flow
+from mesokit.report.flow.maps import LINES, density, speed, vorticity
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
 from mesokit.report.flow.source import Found
 
 
 class Panel(Protocol):
-    """How one panel is drawn: a module.
+    """One panel of a picture: a module, or an object of a class.
 
     NEEDS: "velocity", "density", "particles", "spheres", "headings" or "sites"; TITLE: its name
     where several are side by side.
@@ -59,7 +50,7 @@ KINDS: dict[str, tuple[Panel, ...]] = {
 
 def legend_of(panels: Sequence[Panel]) -> str:
     """What lines in the panels mean that no bar of colours tells."""
-    return vorticity.SAID if vorticity in panels else ""
+    return LINES if vorticity in panels else ""
 
 
 def usual(case: Case, found: Found, first: str, in_time: bool) -> str:

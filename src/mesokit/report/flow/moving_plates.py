@@ -7,7 +7,7 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.method.spheres.common.wall import rows as columns
 from mesokit.method.spheres.common.wall.surfaces import other_walls, surface_rows
-from mesokit.report.flow.shown import Array
+from mesokit.report.flow.data import Array
 
 
 class Plate(NamedTuple):

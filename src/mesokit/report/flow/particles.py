@@ -1,11 +1,13 @@
 """Particles as dots, and bonds between them as lines."""
 
+import math
 from typing import Any
 
 import numpy as np
 
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.region import Region
+from mesokit.report.flow.scale import inches_of
 from mesokit.report.style import COLOURS
 
 NEEDS = "particles"
@@ -17,7 +19,7 @@ THIN, CROWDED = 0.4, 0.4  # points of a bond; of the area by bonds: more cannot 
 
 
 def reach(flow: Flow, region: Region) -> float:
-    """Nothing that a scale would need."""
+    """1: there is no scale."""
     return 1.0
 
 
@@ -29,22 +31,11 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     """Draw those in the region, smaller where they are many, and bonds where these are few."""
     assert flow.particles is not None
     shown = flow.particles[region.holds(flow.particles)]
-    box = ax.get_position()
-    width, height = ax.figure.get_size_inches()
-    area = 72.0**2 * box.width * width * box.height * height
-    size = float(
-        np.clip(np.sqrt(COVERED * area / max(len(shown), 1) * 4 / np.pi), SMALLEST, LARGEST)
-    )
+    area = 72.0**2 * math.prod(inches_of(ax))  # square points
+    usual = np.sqrt(COVERED * area / max(len(shown), 1) * 4 / np.pi)
+    look: Any = {"color": "black", "ms": float(np.clip(usual, SMALLEST, LARGEST)), "mew": 0}
     _bonds(ax, flow, region, area)
-    ax.plot(
-        shown[:, 0],
-        shown[:, 1],
-        "o",
-        color="black",
-        markersize=size,
-        markeredgewidth=0,
-        rasterized=len(shown) > MANY,
-    )
+    ax.plot(*shown.T, "o", rasterized=len(shown) > MANY, **look)
 
 
 def _bonds(ax: Any, flow: Flow, region: Region, area: float) -> None:
@@ -53,8 +44,7 @@ def _bonds(ax: Any, flow: Flow, region: Region, area: float) -> None:
 
     if flow.bonds is None:
         return
-    inside = region.holds(flow.bonds[:, 0]) | region.holds(flow.bonds[:, 1])
-    lines = flow.bonds[inside]
+    lines = flow.bonds[region.holds(flow.bonds[:, 0]) | region.holds(flow.bonds[:, 1])]
     scale = np.sqrt(area / (np.ptp(ax.get_xlim()) * np.ptp(ax.get_ylim())))
     length = scale * np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum()
     if THIN * length < CROWDED * area:

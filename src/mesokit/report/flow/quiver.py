@@ -9,7 +9,7 @@ from mesokit.report.caption import symbols
 from mesokit.report.flow.data import Array, Flow, spacing
 from mesokit.report.flow.layout import KEY_BESIDE
 from mesokit.report.flow.region import Region
-from mesokit.report.flow.scale import reach_of
+from mesokit.report.flow.scale import inches_of, reach_of
 
 NEEDS = "velocity"
 TITLE = "velocity"
@@ -62,44 +62,16 @@ def scale(flow: Flow, reach: float) -> None:
 def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     """Draw it: the longest arrow ends where the next one starts."""
     x, y, velocity = arrows(flow, region)
-    number, (width, height) = max(len(x), len(y)), _inches(ax)
+    number, (width, height) = max(len(x), len(y)), inches_of(ax)
     thick = min(THICKEST, THICK * max(width, height) / number)
-    drawn = ax.quiver(
-        x,
-        y,
-        velocity[..., 0].T,
-        velocity[..., 1].T,
-        angles="xy",
-        scale_units="xy",
-        scale=reach * number / max(region.extent),
-        pivot="mid",
-        color="black",
-        units="inches",
-        width=thick,
-        headwidth=4.5,
-        headlength=5,
-        headaxislength=4.5,
-        minlength=0.5,
-    )
+    units = {"angles": "xy", "scale_units": "xy", "scale": reach * number / max(region.extent)}
+    heads = {"headwidth": 4.5, "headlength": 5, "headaxislength": 4.5, "minlength": 0.5}
+    look = {"pivot": "mid", "color": "black", "units": "inches", "width": thick}
+    drawn = ax.quiver(x, y, *velocity.T, **units, **look, **heads)
     known = _round(reach)
-    above = 0.14 if width > KEY_BESIDE else 0.36
-    ax.quiverkey(
-        drawn,
-        0.97,
-        1 + above / height,
-        known,
-        f"{known:g} {symbols('a/tau')}",
-        labelpos="W",
-        labelsep=0.08,
-        fontproperties={"size": 9},
-        coordinates="axes",
-    )
-
-
-def _inches(ax: Any) -> tuple[float, float]:
-    """Width and height of the axes."""
-    width, height = ax.figure.get_size_inches()
-    return float(ax.get_position().width * width), float(ax.get_position().height * height)
+    place = 0.97, 1 + (0.14 if width > KEY_BESIDE else 0.36) / height
+    text: Any = {"labelpos": "W", "labelsep": 0.08, "fontproperties": {"size": 9}}
+    ax.quiverkey(drawn, *place, known, f"{known:g} {symbols('a/tau')}", coordinates="axes", **text)
 
 
 def _round(value: float) -> float:

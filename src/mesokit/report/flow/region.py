@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,24 @@ from mesokit.report.flow.data import Array
 
 Ranges = Sequence[Sequence[float]]
 FEWEST = 2  # bins along each axis
+
+
+class View(NamedTuple):
+    """Which part of the box is shown: a region, a window of time, a plane and where it lies.
+
+    `colour` says what the colours of spheres mean, `average` how many frames each picture of a film
+    is the mean of.
+    """
+
+    region: Ranges | None = None
+    window: tuple[float, float] | None = None
+    axes: tuple[str, str] | None = None
+    at: float | None = None
+    colour: str | None = None
+    average: int | None = None
+
+
+CHOICES = View._fields
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,10 @@
-"""What all pictures of a case over two axes share."""
+"""Two axes of a box, as all pictures over them have."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -36,35 +37,29 @@ class Setting:
             not closed and not (case.box.sheared and axis == "y")
             for closed, axis in zip(section.closed(), axes, strict=True)
         )
-        size = [float(case.box.size[column]) for column in section.columns]
-        return cls(
-            axes, section.columns, (size[0], size[1]), case.box.dimension, (first, second), case
-        )
+        width, height = (float(case.box.size[column]) for column in section.columns)
+        box = (width, height), case.box.dimension
+        return cls(axes, section.columns, *box, (first, second), case)
 
     def share(self, shape: tuple[int, ...]) -> Array | None:
         """Part of each bin (nx, ny) that is fluid, None where no solid is in the way."""
         solids = None if self.case is None else method_of(self.case).enclosure.solids(self.case)
         if solids is None or not solids.obstruct:
             return None
-        kept = self._shares
-        if shape not in kept:
-            columns = self.columns[0], self.columns[1]
-            kept[shape] = solids.open_share(columns, shape)
-        return kept[shape]
+        if shape not in self._shares:
+            self._shares[shape] = solids.open_share((self.columns[0], self.columns[1]), shape)
+        return self._shares[shape]
 
     @cached_property
     def _shares(self) -> dict[tuple[int, ...], Array]:
         return {}
 
-    def flow(
-        self,
-        density: Array | None = None,
-        velocity: Array | None = None,
-        particles: Array | None = None,
-        error: Array | None = None,
-        noise: Array | None = None,
-    ) -> Flow:
-        """A flow over these axes; densities become those of the open part of each bin."""
+    def flow(self, **arrays: Any) -> Flow:
+        """A flow over these axes; densities become those of the open part of each bin.
+
+        Parameters: `arrays`, by their names in `Flow`.
+        """
+        velocity, density, error = (arrays.get(name) for name in ("velocity", "density", "error"))
         shape = next((a.shape[:2] for a in (velocity, density) if a is not None), None)
         share = None if shape is None else self.share(shape)
         sure = None if share is None else share > SURE
@@ -72,19 +67,10 @@ class Setting:
             largest = np.nan_to_num(error, nan=np.inf).max(axis=-1)
             usual = largest <= UNUSUAL * np.nanmedian(error)
             sure = usual if sure is None else usual & sure
+        found = Flow(self.axes, self.size, self.dimension, self.periodic, sure=sure, **arrays)
         if velocity is not None and share is not None:
-            velocity = rim_filled(velocity, share, self.periodic)
+            found = replace(found, velocity=rim_filled(velocity, share, self.periodic))
         if density is not None and share is not None:
-            density = np.where(share > LEAST, density / np.maximum(share, LEAST), np.nan)
-        return Flow(
-            self.axes,
-            self.size,
-            self.dimension,
-            self.periodic,
-            density,
-            velocity,
-            particles,
-            error,
-            noise,
-            sure,
-        )
+            open_part = np.where(share > LEAST, density / np.maximum(share, LEAST), np.nan)
+            found = replace(found, density=open_part)
+        return found

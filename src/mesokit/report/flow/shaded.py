@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.kernels.kernel import kernel
-from mesokit.report.flow.shown import Array
+from mesokit.report.flow.data import Array
 
 FINER = 2  # samples of a pixel along each axis
 MOST = 3000  # pixels along an axis

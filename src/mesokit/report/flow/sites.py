@@ -1,27 +1,21 @@
 """States of the sites of a lattice as colours."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
+from mesokit.case.trajectory import Group
 from mesokit.errors import CaseError
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.flow.data import Flow
-from mesokit.report.flow.heat_map import heat_map
-from mesokit.report.flow.region import Region
-from mesokit.report.flow.scale import Scale
+from mesokit.report.flow.region import Region, View
+from mesokit.report.flow.scale import Scale, heat_map
 from mesokit.report.flow.setting import Setting
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.case.trajectory import Group
-    from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.report.flow.state import State
-    from mesokit.report.flow.view import View
+from mesokit.report.flow.state import State
 
 NEEDS = "sites"
 TITLE = "sites"
@@ -36,22 +30,17 @@ class SiteSource:
     def __init__(
         self, case: Case, reader: TrajectoryReader | State, group: Group, view: View
     ) -> None:
-        self.case, self.reader, self.group = case, reader, group
+        self.reader, self.group = reader, group
         self.axes, self.time = view.axes or ("x", "y"), reader.time
         self.whole = np.arange(len(reader))
         self.setting = Setting.of(case, self.axes)
         others = {*range(len(group.lattice))} - {*self.setting.columns}
         self.third = next(iter(others), None)
-        self.layer = self._layer(view.at)
-
-    def _layer(self, at: float | None) -> int:
-        """The number of the layer along the third axis, the middle one unless a place is given."""
-        if self.third is None:
-            return 0
-        layers, length = self.group.lattice[self.third], self.case.box.size[self.third]
-        if at is not None and not 0 <= at <= length:
-            raise CaseError(f"at = {show(at)}: expected a place from 0 to {length:g}")
-        return min(int((0.5 if at is None else at / length) * layers), layers - 1)
+        if self.third is not None:  # the middle layer unless a place is given
+            at, layers, length = view.at, group.lattice[self.third], case.box.size[self.third]
+            if at is not None and not 0 <= at <= length:
+                raise CaseError(f"at = {show(at)}: expected a place from 0 to {length:g}")
+            self.layer = min(int((0.5 if at is None else at / length) * layers), layers - 1)
 
     def flow(self, frames: NDArray[np.int64]) -> Flow:
         """States as they are in the last of the frames."""

@@ -26,9 +26,8 @@ FILL, EDGE, HATCH = "0.85", "black", "////"
 
 
 def solids_of(case: Case) -> Solids | None:
-    """What says where the solids of a case are, None without any."""
-    solids: Solids | None = method_of(case).enclosure.solids(case)
-    return solids
+    found: Solids | None = method_of(case).enclosure.solids(case)
+    return found
 
 
 class Section:
@@ -40,7 +39,7 @@ class Section:
     third: int | None = None
 
     def __init__(self, case: Case | None, axes: tuple[str, str], at: float | None = None) -> None:
-        self.solids = None
+        self.solids: Solids | None = None
         if case is None:
             return
         self.case, self.solids = case, solids_of(case)
@@ -79,17 +78,16 @@ class Section:
         return found.reshape(x.shape)
 
     def closed(self) -> tuple[bool, bool]:
-        """Whether a solid closes the box along each axis: there is nothing else beyond its end."""
-        return self._closed(0), self._closed(1)
-
-    def _closed(self, axis: int) -> bool:
+        """Whether a solid closes the box along each axis: all beyond its end is solid."""
         if self.solids is None:
-            return False
-        length = self.case.box.size[self.columns[1 - axis]]
-        along = np.linspace(0, length, 2 * math.ceil(length) + 1)
-        beyond = np.full_like(along, -0.25)
-        x, y = (beyond, along) if axis == 0 else (along, beyond)
-        return bool((self.distance(x, y) < 0).all())
+            return False, False
+        found = []
+        for axis in range(2):
+            length = self.case.box.size[self.columns[1 - axis]]
+            along = np.linspace(0, length, 2 * math.ceil(length) + 1)
+            x, y = (np.full_like(along, -0.25), along)[:: 1 - 2 * axis]
+            found.append(bool((self.distance(x, y) < 0).all()))
+        return found[0], found[1]
 
     def view(self, region: Region) -> Region:
         """The region, and a strip of each plate that it touches."""

@@ -12,8 +12,8 @@ from mesokit.errors import CaseError, RunError
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.observe.flow_frames import FlowFrames
 from mesokit.report.flow.data import Flow
+from mesokit.report.flow.region import View
 from mesokit.report.flow.state import State
-from mesokit.report.flow.view import View
 from mesokit.seam.method import method_of
 from mesokit.seam.result import Result
 
@@ -27,12 +27,7 @@ WORDS = {
     "headings": "positions and velocities of particles",
     "sites": "states of sites",
 }
-AT_ONCE = (
-    "particles",
-    "spheres",
-    "headings",
-    "sites",
-)  # shown as they are at one time, and not as a mean
+AT_ONCE = ("particles", "spheres", "headings", "sites")  # shown at one time, and not as a mean
 FRAMES = '[[observe]] quantity = "flow-frames"'
 REMEDY = {
     "velocity": FRAMES,
@@ -72,10 +67,10 @@ class Found(list["Source"]):
 
 
 class Source(Protocol):
-    """Something that a run has kept and pictures can be drawn from.
+    """Data of a run for pictures.
 
-    gives: which of "velocity", "density" and "particles" it knows.
-    time: of its frames; empty if it only knows the mean over the run.
+    gives: which of the `WORDS` it has.
+    time: of its frames; empty if it has only the mean over the run.
     whole: the frames that average over as long a time as any.
     """
 
@@ -101,8 +96,7 @@ def sources(
 
     Raises CaseError for axes that the box has not, or of which no map was kept.
     """
-    from mesokit.report.flow.field_source import FieldSource
-    from mesokit.report.flow.frame_source import FrameSource
+    from mesokit.report.flow.map_sources import FieldSource, FrameSource
     from mesokit.report.flow.setting import Setting
     from mesokit.report.flow.sites import SiteSource
     from mesokit.report.flow.spheres import SphereSource, from_the_side
@@ -113,8 +107,9 @@ def sources(
     for drawing in ("frames", "map"):
         found_now = [r for r in kept if r.drawing == drawing]
         maps += [(axes_of(r), r) for r in sorted(found_now, key=lambda r: "component" not in r.x)]
-    axes = view.axes
-    _check(case, axes)
+    axes, known = view.axes, case.box.axes
+    if axes is not None and (len(axes) != 2 or axes[0] == axes[1] or not set(axes) <= set(known)):
+        raise CaseError(f"axes = {show(axes)}: expected two of {', '.join(known)}")
     spheres = trajectory is not None and trajectory.diameter is not None
     usual = from_the_side(case.spheres.gravity) if spheres else ("x", "y")
     chosen = axes or (maps[0][0] if maps else usual)
@@ -140,16 +135,8 @@ def axes_of(result: Result) -> Axes:
     return first, second
 
 
-def _check(case: Case, axes: Axes | None) -> None:
-    if axes is None:
-        return
-    known = case.box.axes
-    if len(axes) != 2 or axes[0] == axes[1] or not set(axes) <= set(known):
-        raise CaseError(f"axes = {show(axes)}: expected two of {', '.join(known)}")
-
-
 def choose(found: Found, needs: str, kind: str, in_time: bool) -> Source:
-    """The first source that knows what a panel needs, `in_time` one with frames.
+    """The first source with the data of a panel, `in_time` one with frames.
 
     Raises RunError that says what to add to the case.
     """
@@ -167,7 +154,7 @@ def choose(found: Found, needs: str, kind: str, in_time: bool) -> Source:
 
 
 def choose_one(found: Found, needs: set[str], kind: str) -> Source:
-    """The first source with frames that knows all that the panels of a film need.
+    """The first source with frames that has the data of all panels of a film.
 
     Raises RunError that says what to add to the case.
     """

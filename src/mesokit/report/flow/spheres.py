@@ -13,12 +13,11 @@ from mesokit.case.case import Case
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.caption import in_cells
 from mesokit.report.flow.colouring import Frame, chosen
-from mesokit.report.flow.data import Array, Flow
+from mesokit.report.flow.data import Array, Flow, Spheres
 from mesokit.report.flow.moving_plates import plates_at
+from mesokit.report.flow.region import View
 from mesokit.report.flow.setting import Setting
-from mesokit.report.flow.shown import Spheres
 from mesokit.report.flow.state import State
-from mesokit.report.flow.view import View
 from mesokit.seam.method import method_of
 
 

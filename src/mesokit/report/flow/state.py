@@ -9,12 +9,13 @@ from mesokit.case.case import Case
 from mesokit.case.trajectory import masses_and_kinds
 
 MOST = 20_000  # particles of the first group, evenly picked where there are more
+READ = {"position": "positions", "velocity": "velocities", "spin": "spins", "site": "sites"}
 
 
 class State:
-    """One frame of the particles that an engine has, with what a `TrajectoryReader` tells.
+    """One frame of the particles of an engine, read as a `TrajectoryReader` is.
 
-    Of spheres that is all that trajectories may hold, and all of them.
+    Spheres have all fields that trajectories may hold, and all spheres are in it.
     """
 
     def __init__(self, case: Case, engine: Any) -> None:
@@ -44,13 +45,4 @@ class State:
 
     def __getitem__(self, index: int) -> dict[str, Any]:
         """The frame."""
-        if "site" in self.fields:
-            return {"site": self.engine.sites(self.id)}
-        frame = {"position": self.engine.positions(self.id)}
-        if self.diameter is not None:
-            frame |= {
-                "velocity": self.engine.velocities(self.id), "spin": self.engine.spins(self.id)
-            }  # fmt: skip
-        elif "velocity" in self.fields:
-            frame["velocity"] = self.engine.velocities(self.id)
-        return frame
+        return {name: getattr(self.engine, READ[name])(self.id) for name in self.fields}

@@ -15,11 +15,10 @@ from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
 from mesokit.report.flow.noise import note, smooth, smoothing
-from mesokit.report.flow.region import frames_in, region_of
+from mesokit.report.flow.region import View, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, choose, sources
 from mesokit.report.flow.state import State
-from mesokit.report.flow.view import View
 from mesokit.seam.in_units import of_case
 from mesokit.seam.result import Result
 
@@ -81,7 +80,8 @@ def picture(
     how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
     notes = [section.note(how), mean, note(panels, flows[0], clear), legend_of(panels)]
     notes += [_few(case, panels, flows), when]
-    notes += [text for flow in flows for text in _spheres(flow)]
+    for spheres in filter(None, (flow.spheres for flow in flows)):
+        notes += [f"at {at(spheres.time, 4)}", spheres.tells, spheres.note]
     if any(panel.NEEDS in ("headings", "sites") for panel in panels):
         notes.append(f"at {at(flows[0].time, 6)}")
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
@@ -90,7 +90,7 @@ def picture(
 
 
 def _mean(flow: Flow, window: tuple[float, float] | None) -> str:
-    """What velocities and densities are means of, and how sure they are."""
+    """The time over which velocities and densities are means, and the standard error."""
     text = "mean of the run"
     if window is not None:
         text = f"mean of $t = {rounded(window[0], 6)}$ to {at(window[1], 6, '')}"
@@ -101,15 +101,8 @@ def _mean(flow: Flow, window: tuple[float, float] | None) -> str:
     return text
 
 
-def _spheres(flow: Flow) -> list[str]:
-    """When spheres are where they are, and which of them are shown."""
-    if flow.spheres is None:
-        return []
-    return [f"at {at(flow.spheres.time, 4)}", flow.spheres.tells, flow.spheres.note]
-
-
 def _few(case: Case, panels: Sequence[Panel], flows: Sequence[Flow]) -> str:
-    """How many particles are shown, if not all."""
+    """The number of particles shown, if not all."""
     for panel, flow in zip(panels, flows, strict=True):
         found = flow.particles if flow.spheres is None else flow.spheres.places
         if panel.NEEDS in AT_ONCE and found is not None:

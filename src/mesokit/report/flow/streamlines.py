@@ -4,13 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.report.flow import speed
 from mesokit.report.flow.data import Array, Flow, spacing
 from mesokit.report.flow.follow import Nodes, lines
+from mesokit.report.flow.maps import speed, speed_label
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
 from mesokit.report.flow.smooth import smoothed
-from mesokit.report.style import labelled
 
 NEEDS = "velocity"
 TITLE = "streamlines"
@@ -28,7 +27,7 @@ def scale(flow: Flow, reach: float) -> Scale:
     from matplotlib.colors import ListedColormap
 
     dark = ListedColormap(colormaps["viridis"](np.linspace(0, DARK, 256)))
-    return Scale(0.0, reach, dark, labelled(speed.label(flow), "a/tau"))
+    return Scale(0.0, reach, dark, speed_label(flow))
 
 
 def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:

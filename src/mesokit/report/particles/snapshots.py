@@ -21,9 +21,9 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
             _scatter(ax, result, -1, 0, names)
         return
     count = max(len(steps), 1)
-    width = figure.get_figwidth()
-    ratios = [min(_height(result, first), TALL) for first in (0, 2)]
-    side = (width - 0.8) / max(count, 2)  # of a panel
+    spans = [np.subtract(*_ends(result, first)) for first in (0, 2)]
+    ratios = [min(float(y / x), TALL) for x, y in spans]  # heights over widths of panels
+    side = (figure.get_figwidth() - 0.8) / max(count, 2)  # of a panel
     figure.set_figheight(figure.get_figheight() - 4.8 + 0.9 + sum(ratios) * side)
     panels = figure.subplots(2, count, squeeze=False, height_ratios=ratios)
     for k, step in enumerate(steps):
@@ -37,12 +37,6 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     legend_of(figure, [panels[0, 0]])
 
 
-def _height(result: Result, first: int) -> float:
-    """Height over width of a panel."""
-    low, high = _ends(result, first)
-    return float((high[1] - low[1]) / (high[0] - low[0]))
-
-
 def _ends(result: Result, first: int) -> tuple[Any, Any]:
     """Lower and upper ends of both axes: around the box and all steps, a square of velocities."""
     values = result.value[:, :, first : first + 2].reshape(-1, 2)
@@ -50,9 +44,7 @@ def _ends(result: Result, first: int) -> tuple[Any, Any]:
         values = np.concatenate([values, [[0.0, 0.0]], [result.extra["size"]]])
     low, high = values.min(axis=0), values.max(axis=0)
     longest = float((high - low).max() or 1.0)
-    half = 0.53 * longest
-    if first == 0:
-        half = 0.5 * (high - low) + 0.03 * longest
+    half = 0.53 * longest if first else 0.5 * (high - low) + 0.03 * longest
     return (low + high) / 2 - half, (low + high) / 2 + half
 
 

@@ -1,11 +1,11 @@
-"""Molecules in time: size, orientation, the way of their centres and their velocity."""
+"""Molecules in time: size, orientation, place of their centres and velocity."""
 
 from typing import Any
 
 import numpy as np
 
 from mesokit.report.finish.legend import legend_above
-from mesokit.report.style import COLOURS, LINES, labelled
+from mesokit.report.style import COLOURS, LINES, labelled, time_axis
 from mesokit.seam.result import Result
 
 SHOWN = 6  # molecules with a line of their own
@@ -18,8 +18,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         _lines(ax, result, "gyration", "radius of gyration $R_g$")
         ax.set_xlabel(labelled("time $t$", result.units["time"]))
         return
-    names = [str(name) for name in result.x["component"]]
-    axis = str(result.extra["axis"])
+    names, axis = [str(name) for name in result.x["component"]], str(result.extra["axis"])
     wanted = [
         ("gyration", "radius of\ngyration $R_g$"),
         ("end-to-end", "end-to-end\ndistance $R$"),
@@ -35,27 +34,18 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         _lines(panel, result, name, label)
         panel.yaxis.label.set_size(9)
         panel.locator_params(axis="y", nbins=4)
-    time = result.x["time"]
-    if len(time) > 1:
-        panels[-1].set_xlim(time[0], time[-1])
-    panels[-1].set_xlabel(labelled("time $t$", result.units["time"]))
+    time_axis(panels[-1], result.x["time"], result.units["time"])
     title = "molecule" if len(result.x["molecule"]) <= SHOWN else f"molecule (first {SHOWN})"
     legend_above(panels[0], title=title, handlelength=1.5)
     figure.align_ylabels()
 
 
 def _lines(ax: Any, result: Result, name: str, label: str) -> None:
-    """One number of the first molecules, and its root mean square where theory knows it."""
+    """Draw one number of the first molecules, and its root mean square in theory."""
     column = [str(n) for n in result.x["component"]].index(name)
     for k, molecule in enumerate(result.x["molecule"][:SHOWN]):
-        ax.plot(
-            result.x["time"],
-            result.value[:, k, column],
-            color=COLOURS[k],
-            ls=LINES[k],
-            lw=0.9,
-            label=str(int(molecule)),
-        )
+        look: Any = {"color": COLOURS[k], "ls": LINES[k], "label": str(int(molecule))}
+        ax.plot(result.x["time"], result.value[:, k, column], lw=0.9, **look)
     known = {"gyration": "ideal_gyration", "end-to-end": "ideal_end_to_end"}.get(name)
     if known and np.isfinite(result.extra[known]):
         ax.axhline(result.extra[known], color="black", lw=1.3, label="ideal: root mean square")

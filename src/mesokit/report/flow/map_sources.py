@@ -1,4 +1,4 @@
-"""Pictures from the observable flow-frames."""
+"""Pictures from maps: means of a whole run, or frames of the observable flow-frames."""
 
 from functools import cached_property
 
@@ -9,6 +9,30 @@ from mesokit.observe.flow_frames import weights
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.setting import Setting
 from mesokit.seam.result import Result
+
+
+class FieldSource:
+    """One map, the mean over a whole run: of a velocity, which has components, or of a density."""
+
+    def __init__(self, setting: Setting, result: Result) -> None:
+        self.setting, self.result, self.axes = setting, result, setting.axes
+        self.gives = frozenset({"velocity" if "component" in result.x else "density"})
+        self.time = np.zeros(0)
+        self.whole = np.zeros(0, np.int64)
+
+    def flow(self, frames: NDArray[np.int64]) -> Flow:
+        """The map."""
+        result = self.result
+        turned = next(iter(result.x)) != self.axes[0]
+        value, error = (a.swapaxes(0, 1) if turned else a for a in (result.value, result.error))
+        if "density" in self.gives:
+            return self.setting.flow(density=value)
+        components = list(result.x["component"])
+        use = [components.index(axis) for axis in self.axes]
+        velocity, error = value[..., use], error[..., use]
+        noise = np.random.default_rng(0).normal(size=error.shape) * error
+        known = np.isfinite(error).any()
+        return self.setting.flow(velocity=velocity, error=error, noise=noise if known else None)
 
 
 class FrameSource:

@@ -1,4 +1,4 @@
-"""Two spheres that collide by a linear spring and a dashpot."""
+"""Collisions of two spheres: by a linear spring and a dashpot, and elastic (Hertz 1882)."""
 
 import math
 from typing import NamedTuple
@@ -19,17 +19,9 @@ def spring_dashpot(stiffness: float, damping: float, mass: float, pulls: bool = 
     w^2 - b^2))/w, and, overdamped with W^2 = b^2 - k/m, t = log((b + W)/(b - W))/W; e = exp(-b t)
     (Schwager and Poschel, Granular Matter 9, 465, 2007).
 
-    Parameters
-    ----------
-    stiffness, damping : float
-        k and g.
-    mass : float
-        Reduced mass.
-    pulls : bool
-        Whether the force may pull at the end.
+    Parameters: `stiffness`, `damping` k and g; `mass` reduced mass; `pulls` whether the force may
+    pull at the end.
 
-    Examples
-    --------
     >>> e, t = spring_dashpot(1e5, 20.0, 0.5)
     >>> round(e, 6), round(t, 8)
     (0.868805, 0.00703185)
@@ -51,3 +43,30 @@ def spring_dashpot(stiffness: float, damping: float, mass: float, pulls: bool = 
     w = math.sqrt(b * b - square)
     time = math.log((b + w) / (b - w)) / w
     return Collision(math.exp(-b * time), time)
+
+
+# the integral of 2 ds/sqrt(1 - s^(5/2)) from 0 to 1: contact time over largest overlap and speed
+DURATION = 2 * math.sqrt(math.pi) * math.gamma(1.4) / math.gamma(0.9)
+
+
+class Press(NamedTuple):
+    """Largest overlap and how long the collision takes."""
+
+    overlap: float
+    time: float
+
+
+def hertz_contact(stiffness: float, mass: float, speed: float) -> Press:
+    """Largest overlap x = (5 m v^2/4k)^(2/5) and duration 2.943275 x/v, with the force k x^(3/2).
+
+    Parameters: `stiffness`, `mass`, `speed` k, the reduced mass, and the normal velocity before the
+    collision.
+
+    >>> found = hertz_contact(1e5, 0.5, 1.0)
+    >>> round(found.overlap, 8), round(found.time / found.overlap, 6)
+    (0.00828614, 2.943275)
+    """
+    if speed == 0:
+        return Press(0.0, math.inf)
+    overlap = (1.25 * mass * speed**2 / stiffness) ** 0.4
+    return Press(overlap, DURATION * overlap / speed)

@@ -6,7 +6,7 @@ import numpy as np
 
 from mesokit.report.caption import mathematics
 from mesokit.report.finish.legend import legend_above
-from mesokit.report.style import COLOURS, LINES, MARKERS, labelled
+from mesokit.report.style import COLOURS, ERROR, LINES, labelled, points
 from mesokit.seam.result import Result
 
 SYMBOLS = {
@@ -33,33 +33,22 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     _curves(result, shear, names[:-1])
     _curves(result, normal, names[-1:], first=len(names) - 1)
     normal.set_xlabel(labelled("time $t$", result.units["time"]))
-    normal.get_legend_handles_labels()
     legend_above(shear)
     figure.align_ylabels()
 
 
 def _curves(result: Result, ax: Any, names: list[str], first: int = 0) -> None:
-    """Points with error bars where there are some, and theory."""
+    """Draw points, with error bars if known, and theory."""
     time = result.x["time"]
     for k, name in enumerate(names, start=first):
         value, error = result.value[:, k], result.error[:, k]
         known = bool(np.isfinite(error).any())
-        ax.errorbar(
-            time,
-            value,
-            error if known else None,
-            fmt=MARKERS[k],
-            mfc="white",
-            ms=3,
-            lw=0.8,
-            color=COLOURS[k],
-            label=SYMBOLS[name] + (r", $\pm$ one standard error" if known and not k else ""),
-            zorder=2,
-        )
+        label = SYMBOLS[name] + f", {ERROR}" * (known and not k)
+        points(ax, time, value, error if known else None, k, ms=3, lw=0.8, label=label)
         if result.expected is not None:
             of = f" of {SYMBOLS[name]}" if len(names) > 1 else ""
-            label = mathematics(f"theory: {result.theory}{of}") if first == 0 else None
+            theory = mathematics(f"theory: {result.theory}{of}") if first == 0 else None
             look: Any = {"color": "black", "lw": 1.2, "ls": LINES[k - first], "zorder": 3}
-            ax.plot(time, result.expected[:, k], label=label, **look)
+            ax.plot(time, result.expected[:, k], label=theory, **look)
     ax.axhline(0, color="0.7", lw=0.7, zorder=1)
     ax.set_ylabel(labelled(SYMBOLS[names[0]], result.units["value"]))

@@ -1,1 +1,0 @@
-"""Pictures of molecules: in time, and how their numbers are distributed."""
