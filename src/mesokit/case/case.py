@@ -10,15 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from mesokit.case import checks, methods, toml
 from mesokit.case.box import Box
-from mesokit.case.component import (
-    build,
-    component,
-    known_keys,
-    nearest,
-    one_of,
-    param,
-    show,
-)
+from mesokit.case.component import build, component, known_keys, nearest, one_of, param, show
 from mesokit.case.describe.shown import Shown
 from mesokit.case.log import Log
 from mesokit.case.registry import FAMILIES

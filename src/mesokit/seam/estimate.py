@@ -86,10 +86,7 @@ class Estimate(NamedTuple):
         return np.asarray(added @ self.spans / np.where(total > 0, total, 1.0))
 
     def scalar(
-        self,
-        value: float | Array,
-        gradient: Array,
-        over: tuple[float | Array, Array] | None = None,
+        self, value: float | Array, gradient: Array, over: tuple[float | Array, Array] | None = None
     ) -> tuple[float, float]:
         """A function of the value (n,), given what it is and its gradient: value and error.
 

@@ -96,11 +96,7 @@ class CollisionRule(ABC):
         if known is None or gas.thermostat is None:
             return 0.0
         return theory.temperature_offset(
-            known["rule"],
-            gas.thermostat,
-            gas.dimension,
-            gas.density,
-            mean_free_path,
+            known["rule"], gas.thermostat, gas.dimension, gas.density, mean_free_path
         )
 
     def bead_diffusion(

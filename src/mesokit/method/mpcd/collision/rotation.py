@@ -69,11 +69,7 @@ def angular_velocity(n, mass, q, angular_momentum):
     x = inverse * (m00 * lx + m01 * ly + m02 * lz)
     y = inverse * (m01 * lx + m11 * ly + m12 * lz)
     z = inverse * (m02 * lx + m12 * ly + m22 * lz)
-    return (
-        x if regular else line * lx,
-        y if regular else line * ly,
-        z if regular else line * lz,
-    )
+    return (x if regular else line * lx, y if regular else line * ly, z if regular else line * lz)
 
 
 @scalar

@@ -37,12 +37,7 @@ FIRST_OF_POOLS = 2**60  # the number of the first of these bonds; molecules are 
 
 
 def grown(
-    solutes: Solutes,
-    kT: float,
-    box: Floats,
-    periods: Floats,
-    seed: int,
-    in_fluid: InFluid,
+    solutes: Solutes, kT: float, box: Floats, periods: Floats, seed: int, in_fluid: InFluid
 ) -> Floats:
     """Places (beads, d) of all solutes, molecules whole: bonds may leave the box.
 
@@ -173,12 +168,7 @@ def _draw_network(
 
 
 def _grow_ring(
-    there: Placed,
-    molecule: Molecule,
-    pool: Floats,
-    first: Floats,
-    random: Draws,
-    in_fluid: InFluid,
+    there: Placed, molecule: Molecule, pool: Floats, first: Floats, random: Draws, in_fluid: InFluid
 ) -> bool:
     """A regular polygon in any direction, its bonds as long as they are on average."""
     d, beads = len(first), molecule.length
