@@ -79,7 +79,6 @@ def require_parts(record: Any) -> None:
 
 
 def _components(part: Any) -> Iterator[Any]:
-    """A component and all that it holds."""
     if isinstance(part, tuple):
         for element in part:
             yield from _components(element)

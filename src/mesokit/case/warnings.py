@@ -69,7 +69,6 @@ def require_memory(key: str, given: Any, needed: float) -> None:
 
 
 def _usual(part: Any, name: str) -> Any:
-    """The default of a parameter, None without one."""
     defaults = {field.name: field.default for field in dataclasses.fields(part)}
     return getattr(defaults.get(name), "default", defaults.get(name))
 

@@ -19,7 +19,6 @@ class FENE(Bond):
 
     @property
     def longest(self) -> float:
-        """Length that the bond cannot reach."""
         return self.R0
 
     def kernel(self) -> Finite:

@@ -22,14 +22,12 @@ class Harmonic(Bond):
 
     @property
     def longest(self) -> float:
-        """Length that the bond cannot reach."""
         return math.inf
 
     def kernel(self) -> Square:
         return Square(self.K)
 
     def spring(self) -> theory.Spring:
-        """The spring without a length of its own that it is."""
         return theory.spring(K=self.K)
 
 
@@ -43,14 +41,12 @@ class Spring(Bond):
 
     @property
     def longest(self) -> float:
-        """Length that the bond cannot reach."""
         return math.inf
 
     def kernel(self) -> AboutLength:
         return AboutLength(self.k, self.length)
 
     def spring(self) -> theory.Spring | None:
-        """The spring without a length of its own that it is, if it is one."""
         return theory.spring(k=self.k) if self.length == 0 else None
 
 

@@ -25,7 +25,6 @@ class LennardJones(Pair):
 
     @property
     def diameter(self) -> float:
-        """How large a bead is."""
         return self.sigma
 
     def mixed(self, other: Pair) -> LennardJones | None:
@@ -38,7 +37,6 @@ class LennardJones(Pair):
         return LennardJones(*both, self.cutoff, self.shift)
 
     def kernel(self) -> TwelveSix:
-        """Parameters for the scalar function below."""
         return twelve_six(self.epsilon, self.sigma, self.cutoff, self.shift)
 
 

@@ -219,7 +219,6 @@ class Table(FromContents, Pair):
         return np.column_stack([value[:-1], first, rise - first - third, third])
 
     def kernel(self) -> Cubics:
-        """Parameters for the scalar function below."""
         near, far = self.rows[0, 0] ** 2, self.rows[-1, 0] ** 2
         digest = hashlib.sha256(self.cubics.tobytes()).hexdigest()
         return Cubics(

@@ -60,7 +60,6 @@ class _Untitled(GenerateJsonSchema):
 
 
 def _resolved(schema: Schema, definitions: Mapping[str, Schema]) -> Schema:
-    """What a schema refers to, if it does nothing else."""
     place = schema.get("$ref")
     return definitions[place.removeprefix(PLACE)] if place else schema
 

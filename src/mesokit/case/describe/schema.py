@@ -96,7 +96,6 @@ def _told_by(told: dict[str, str]) -> str:
 
 
 def _told(inner: dict[str, Any]) -> str:
-    """What a key means."""
     told: str = inner.get("description", "")
     return told
 
@@ -116,7 +115,6 @@ def _needed(field: Any) -> bool:
 
 
 def _by_key(case: Any, fields: dict[str, Any]) -> dict[str, Any]:
-    """The sections of a method by their keys in a file."""
     return {case._method.keys.get(name, name): inner for name, inner in fields.items()}
 
 

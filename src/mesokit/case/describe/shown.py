@@ -14,6 +14,5 @@ class Shown:
         raise NotImplementedError
 
     def _repr_html_(self) -> str:
-        """What a notebook asks for."""
         html: str = importlib.import_module(PAGES).card(**self._card())
         return html

@@ -24,5 +24,4 @@ class Cessation(InStages):
     stop: float = param(doc="time of shear", unit="time", gt=0, le=1e9)
 
     def stages(self) -> tuple[float, Ramp, Ramp | None]:
-        """Shear and rest."""
         return self.rate, Ramp(-self.rate, self.stop, self.stop), None

@@ -34,11 +34,9 @@ class OscillatingShear(ShearHistory):
 
     @property
     def repeats_after(self) -> float:
-        """The period of the cosine."""
         return 2 * math.pi / self.frequency
 
     def kernel(self, height: float) -> Cosine:
-        """Parameters for the scalar functions."""
         return Cosine(self.rate * height, self.frequency)
 
 

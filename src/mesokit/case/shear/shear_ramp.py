@@ -22,6 +22,5 @@ class ShearRamp(InStages):
     initial: float = param(0.0, doc="shear rate before the ramp", unit="1/time", ge=-1e6, le=1e6)
 
     def stages(self) -> tuple[float, Ramp, Ramp | None]:
-        """Even change."""
         end = self.start + self.duration
         return self.initial, Ramp(self.rate - self.initial, self.start, end), None

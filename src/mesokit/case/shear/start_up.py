@@ -24,5 +24,4 @@ class StartUp(InStages):
     start: float = param(0.0, doc="time of rest before it", unit="time", ge=0, le=1e9)
 
     def stages(self) -> tuple[float, Ramp, Ramp | None]:
-        """Rest and shear."""
         return 0.0, Ramp(self.rate, self.start, self.start), None

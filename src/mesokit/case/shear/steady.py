@@ -26,7 +26,6 @@ class SteadyShear(ShearHistory):
         return abs(self.rate)
 
     def kernel(self, height: float) -> Even:
-        """Parameters for the scalar functions."""
         return Even(self.rate * height)
 
 

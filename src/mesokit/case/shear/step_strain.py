@@ -23,6 +23,5 @@ class StepStrain(InStages):
     start: float = param(0.0, doc="time of rest before it", unit="time", ge=0, le=1e9)
 
     def stages(self) -> tuple[float, Ramp, Ramp | None]:
-        """Rest, shear and rest."""
         rate, end = self.strain / self.duration, self.start + self.duration
         return 0.0, Ramp(rate, self.start, self.start), Ramp(-rate, end, end)

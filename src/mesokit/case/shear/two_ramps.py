@@ -57,7 +57,6 @@ class InStages(ShearHistory):
 
     @property
     def repeats_after(self) -> float | None:
-        """The period."""
         return self.period
 
     def problems(self) -> Iterator[str]:
@@ -71,7 +70,6 @@ class InStages(ShearHistory):
             )
 
     def kernel(self, height: float) -> TwoRamps:
-        """Parameters for the scalar functions."""
         before, first, second = self.stages()
         first, second = (
             Ramp(ramp.change * height, ramp.begin, ramp.end) for ramp in (first, second or NOTHING)

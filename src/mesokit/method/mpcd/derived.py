@@ -190,7 +190,6 @@ def _pipe_speed(case: Case) -> float | None:
 
 
 def _typical(speed: float, flow: str) -> float:
-    """The speed in the Reynolds number: along pipes the mean, half of the largest; else that."""
     return speed / 2 if flow == PIPE else speed
 
 

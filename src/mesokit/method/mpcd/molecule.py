@@ -200,7 +200,6 @@ class Springs(NamedTuple):
 
 @functools.lru_cache(maxsize=64)
 def _frequency(molecule: Molecule, dimension: int, kT: float, mass: float) -> float:
-    """Angular frequency of the fastest oscillation."""
     bond, longest = molecule.bond_potentials, molecule.bond.longest
     square = stiffness(bond, kT, longest) * links.stiffest_mode(molecule.bonds, molecule.length)
     if molecule.bending is not None:  # four neighbours at most move against a bead

@@ -195,7 +195,6 @@ def convert(case: Case) -> SI:
 
 
 def _reduced(case: Case) -> Properties:
-    """What the simulated fluid has in reduced units."""
     density, kT, path = setting.mass_density(case), case.fluid.kT, setting.mean_free_path(case)
     found = setting.transport(case)
     if found is None:
@@ -222,7 +221,6 @@ def _mass_and_time(
 
 
 def _aligned(rows: Iterable[tuple[str, ...]]) -> list[str]:
-    """Rows of texts as lines, in columns."""
     table = list(rows)
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     lines = ("  ".join(t.ljust(w) for t, w in zip(row, widths, strict=True)) for row in table)

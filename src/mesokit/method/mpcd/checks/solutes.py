@@ -87,7 +87,6 @@ def _sizes(case: Case, given: Solutes) -> Iterator[str]:
 
 
 def _substeps(case: Case, given: Solutes) -> Iterator[str]:
-    """Sub-steps short enough for the stiffest spring."""
     fluid, d = case.fluid, case.box.dimension
     need = given.needed_substeps(d, fluid)
     if given.substeps is None:

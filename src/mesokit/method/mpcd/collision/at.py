@@ -36,24 +36,20 @@ class AT(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 80.0, 3: 58.0}
 
     def kernel(self, dimension: int, kT: float) -> AT2 | AT3:
-        """Parameters for the scalar functions below."""
         return AT2(kT) if dimension == 2 else AT3(kT)
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
-        """The momentum of the drawn velocities."""
         return ("momentum",) * dimension
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
         return dimension
 
     def in_theory(self) -> dict[str, Any]:
-        """The name by which `mesokit.theory` knows it."""
         return {"rule": "at"}
 
     def bead_diffusion(
         self, gas: Gas, mass: float, others: Sequence[tuple[float, float]] = ()
     ) -> float:
-        """Diffusion coefficient of a bead of this mass in the gas, among others."""
         return theory.bead_diffusion(
             "at", gas.dimension, gas.density, gas.timestep, None, mass, gas.kT, gas.mass, *others
         )

@@ -38,7 +38,6 @@ class ATPlusA(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 60.0, 3: 33.0}
 
     def kernel(self, dimension: int, kT: float) -> ATPlusA2 | ATPlusA3:
-        """Parameters for the scalar functions below."""
         return ATPlusA2(kT) if dimension == 2 else ATPlusA3(kT)
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
@@ -52,7 +51,6 @@ class ATPlusA(CollisionRule):
         return 3 if dimension == 2 else 6
 
     def in_theory(self) -> dict[str, Any]:
-        """The name by which `mesokit.theory` knows it."""
         return {"rule": "at+a"}
 
 

@@ -53,12 +53,10 @@ class Demix(CollisionRule):
         return kind(self.coupling / math.sqrt(kT), 2**60, 2**60)
 
     def among(self, kernel: Any, counts: tuple[int, ...], mass: float) -> Turning2 | Turning3:
-        """The parameters for so many particles of each kind."""
         strength = kernel.strength / (mass * math.sqrt(mass))
         return type(kernel)(strength, counts[0], sum(counts))
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
-        """Mass times colour, and its momentum."""
         return ("mass",) + ("momentum",) * dimension
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:

@@ -25,11 +25,9 @@ class NoCollision(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 280.0, 3: 190.0}
 
     def kernel(self, dimension: int, kT: float) -> Uncollided:
-        """Parameters for the scalar functions below."""
         return Uncollided()
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
-        """None."""
         return ()
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:

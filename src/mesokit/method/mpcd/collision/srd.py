@@ -49,21 +49,18 @@ class SRD(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 210.0, 3: 130.0}
 
     def kernel(self, dimension: int, kT: float) -> SRD2 | SRD2Uniform | SRD3:
-        """Parameters for the scalar functions below."""
         c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
         if dimension == 3:
             return SRD3(c, s)
         return SRD2(c, s) if self.angle_distribution == "fixed" else SRD2Uniform(c)
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
-        """None: the momentum is enough."""
         return ()
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
         return 4 if dimension == 2 else 6 + stretched
 
     def problems(self, dimension: int) -> Iterator[str]:
-        """Angles that the dimension does not allow."""
         if self.angle_distribution == "fixed":
             if self.angle == 180 and dimension == 2:
                 yield HALF_TURN
@@ -77,7 +74,6 @@ class SRD(CollisionRule):
             )
 
     def in_theory(self) -> dict[str, Any]:
-        """The name and angle by which `mesokit.theory` knows it."""
         fixed = self.angle_distribution == "fixed"
         return {"rule": "srd", "angle": self.angle if fixed else "uniform"}
 
@@ -89,7 +85,6 @@ class SRD(CollisionRule):
     def bead_diffusion(
         self, gas: Gas, mass: float, others: Sequence[tuple[float, float]] = ()
     ) -> float:
-        """Diffusion coefficient of a bead of this mass in the gas, among others."""
         # the cosine of an angle of 90 degrees is the mean of that of uniform ones
         angle = self.angle if self.angle_distribution == "fixed" else 90.0
         return theory.bead_diffusion(

@@ -53,7 +53,6 @@ class SRDPlusA(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 120.0, 3: 40.0}
 
     def kernel(self, dimension: int, kT: float) -> SRDPlusA2 | SRDPlusA3:
-        """Parameters for the scalar functions below."""
         c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
         return SRDPlusA2(c, s) if dimension == 2 else SRDPlusA3(c, s)
 
@@ -67,12 +66,10 @@ class SRDPlusA(CollisionRule):
         return 5 if dimension == 2 else 12
 
     def problems(self, dimension: int) -> Iterator[str]:
-        """Angles that the dimension does not allow."""
         if self.angle == 180 and dimension == 2:
             yield HALF_TURN
 
     def in_theory(self) -> dict[str, Any]:
-        """The name and angle by which `mesokit.theory` knows it."""
         return {"rule": "srd+a", "angle": self.angle}
 
 

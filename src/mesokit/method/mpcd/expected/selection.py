@@ -102,7 +102,6 @@ def kind_of(case: Case, group: Group) -> int | str:
 
 
 def _species(case: Case, kind: int | str) -> Group:
-    """Particles of one species."""
     kinds = case.groups[0].kinds
     if not isinstance(kind, int) or not 1 <= kind <= len(kinds):
         raise CaseError(f"kind = {show(kind)}: expected 1 to {len(kinds)} (fluid.species)")

@@ -193,7 +193,6 @@ class SampledForce(FromContents, Force):
         return self.largest_in(tuple(n - 1 for n in self.shape))
 
     def largest_in(self, size: tuple[int, ...]) -> float:
-        """Largest size of the acceleration in a box of this size."""
         return float(np.linalg.norm(self.nodes(size), axis=-1).max())
 
     def misfits(self, size: tuple[int, ...]) -> Iterator[str]:

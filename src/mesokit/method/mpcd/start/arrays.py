@@ -137,7 +137,6 @@ def _no_conformation(case: Case) -> None:
 
 
 def _is_map(path: str) -> bool:
-    """Whether each rank may read its rows of a file by itself."""
     try:
         return is_plain(path)
     except OSError:
@@ -145,7 +144,6 @@ def _is_map(path: str) -> bool:
 
 
 def _load(case: Case, owner: str, key: str, name: str, path: str) -> Any:
-    """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
     try:
         scale = getattr(case, owner).start.scale
         return array_in_file(path, name, _shape(case, owner), scale)

@@ -66,7 +66,6 @@ def first_state(
 
 
 def _require_drawable(solutes: Solutes) -> None:
-    """Raise CaseError for free molecules whose beads must be given places."""
     for kind in range(len(solutes.polymers)):
         molecule = solutes.molecule(kind)
         if isinstance(molecule, FreeMolecule) and molecule.bond.spring() is None:
@@ -80,7 +79,6 @@ def _require_drawable(solutes: Solutes) -> None:
 
 
 def _beads_from_file(case: Case, path: str) -> tuple[Any, Any]:
-    """Places and velocities of beads, from a file that another program has written."""
     return fitted_beads(case, read_snapshot(path, case.solutes.start.scale))
 
 
@@ -95,7 +93,6 @@ def _last_beads(case: Case, path: str) -> tuple[Any, Any]:
 
 
 def _polymers(case: Case) -> list[tuple[Any, ...]]:
-    """Number, length, topology and arms of each kind of solutes."""
     kinds = case.solutes.polymers if case.solutes is not None else ()
     return [
         (kind.number, kind.length, kind.topology, kind.arms, *kind.pairs_of_beads) for kind in kinds
@@ -103,7 +100,6 @@ def _polymers(case: Case) -> list[tuple[Any, ...]]:
 
 
 def _from_file(case: Case, path: str) -> tuple[Any, Any]:
-    """Positions and velocities, by particle id, of a file that another program has written."""
     return fitted(case, read_snapshot(path, case.fluid.start.scale))
 
 
@@ -142,5 +138,4 @@ def _last_fluid(
 
 
 def _kinds(case: Case) -> list[tuple[float, int]]:
-    """Mass and number of each kind of particles."""
     return [(kind.mass, kind.number) for kind in case.groups[0].kinds]

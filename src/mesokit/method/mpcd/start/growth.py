@@ -76,7 +76,6 @@ def grown(
 
 
 def _nearest(pair: Pair | None, kT: float) -> float:
-    """How near two beads may start to one another."""
     return nearest_of(pair.kernel(), kT) if pair is not None else 0.0
 
 
@@ -193,7 +192,6 @@ def _reflected(vectors: Floats, along: Floats) -> Floats:
 
 
 def _any_turn(d: int, random: Draws) -> Floats:
-    """A random orthogonal matrix."""
     q, r = np.linalg.qr(np.concatenate([random.normals(d) for _ in range(d)]))
     return q * np.sign(np.diag(r))
 

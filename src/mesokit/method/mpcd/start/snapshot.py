@@ -179,7 +179,6 @@ def fitted_beads(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
 
 
 def _connected(case: Case, places: Floats) -> Floats:
-    """Each bead in the image that is nearest to the one that it hangs on."""
     assert case.solutes is not None
     closed = {*closed_axes(case.walls), *case.box.open}
     axes = AXES[: case.box.dimension]
