@@ -12,7 +12,8 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import FileName, FromContents, component, param, show, tag
+from mesokit.case.component import component, param, show, tag
+from mesokit.case.given.file import FileName, FromContents
 from mesokit.errors import CaseError
 from mesokit.potential.protocol import Pair, breaks, central
 from mesokit.scalar.jit import scalar

@@ -14,7 +14,7 @@ from pydantic.json_schema import GenerateJsonSchema
 Schema = dict[str, Any]
 PLAIN = ContextVar("PLAIN", default=False)  # docstrings as written, for they are described here
 PLACE = "#/definitions/"
-TAGS = ("rule", "shape", "quantity", "substance")  # as in `component`, which this file comes before
+TAGS = ("rule", "shape", "quantity", "substance")  # keys whose value names a component
 LIMITS = {  # as pydantic leaves them beside a choice that has None
     "gt": "exclusiveMinimum",
     "ge": "minimum",

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Box
-from mesokit.case.component import FileName, FromContents, component, param, show, tag
+from mesokit.case.component import component, param, show, tag
 from mesokit.case.given.array_file import array_of_contents
+from mesokit.case.given.file import FileName, FromContents
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.field.protocol import Force, acceleration
 from mesokit.scalar.intrinsics import floor, mul_add, with_item

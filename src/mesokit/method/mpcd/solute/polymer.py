@@ -1,7 +1,8 @@
 """One kind of solute, and what acts between two kinds."""
 
-from mesokit.case.component import FileName, component, param
+from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
+from mesokit.case.given.file import FileName
 from mesokit.method.mpcd import topology as links
 from mesokit.method.mpcd.solute.free import linked_parts, problem, read_links
 from mesokit.potential import Angle, Bond, Pair

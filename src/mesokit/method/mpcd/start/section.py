@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pydantic import model_validator
 
-from mesokit.case.component import FileName, component, param, show
+from mesokit.case.component import component, param, show
+from mesokit.case.given.file import FileName
 
 
 @component
