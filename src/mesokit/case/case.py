@@ -12,9 +12,8 @@ from mesokit.case import checks, methods, toml
 from mesokit.case.box import Box
 from mesokit.case.component import build, component, known_keys, nearest, one_of, param, show
 from mesokit.case.describe.shown import Shown
-from mesokit.case.log import Log
 from mesokit.case.registry import FAMILIES
-from mesokit.case.run import Run
+from mesokit.case.run import Log, Run
 from mesokit.case.trajectory import Group, Trajectory
 from mesokit.case.units import Units
 from mesokit.errors import CaseError

@@ -24,8 +24,8 @@ import pydantic
 from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
-from mesokit.case.describe.docstring import Documented
 from mesokit.case.describe.hints import show_signature
+from mesokit.case.describe.keys import Documented
 from mesokit.case.describe.plain import TAGS
 from mesokit.case.registry import FAMILIES, Family, register
 from mesokit.errors import CaseError

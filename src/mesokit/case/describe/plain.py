@@ -42,9 +42,13 @@ def plain_schemas(components: Mapping[str, Any]) -> tuple[dict[str, Schema], dic
             definition["properties"][tag] |= {"const": name}  # also where its author wrote `str`
             if len(parts) > 1:  # the only part need not be named
                 definition["required"] = sorted({*definition.get("required", ()), tag})
-    schemas = {name: _resolved(found[name, _inputs], definitions) for name in components}
+    schemas = {}
+    for name in components:
+        schema = found[name, _inputs]
+        place = schema.get("$ref")  # of a schema that is only a reference
+        schemas[name] = _plain(definitions[place.removeprefix(PLACE)] if place else schema)
     return (
-        {name: _plain(schema) for name, schema in schemas.items()},
+        schemas,
         {name: _plain(schema) for name, schema in definitions.items()},
     )
 
@@ -57,11 +61,6 @@ class _Untitled(GenerateJsonSchema):
 
     def field_title_should_be_set(self, schema: Any) -> bool:
         return False
-
-
-def _resolved(schema: Schema, definitions: Mapping[str, Schema]) -> Schema:
-    place = schema.get("$ref")
-    return definitions[place.removeprefix(PLACE)] if place else schema
 
 
 def _choices(node: Any) -> Iterable[tuple[str, dict[str, str]]]:
@@ -104,11 +103,6 @@ def _plain(node: Schema) -> Schema:
     return made
 
 
-def _said(table: Schema) -> Schema:
-    """A table without the values that are not given."""
-    return {key: each for key, each in table.items() if each not in (None, [])}
-
-
 def _settle_default(made: Schema) -> None:
     """Leave out a default that says nothing: a table of defaults, or what stands for one that is
     found later."""
@@ -117,8 +111,13 @@ def _settle_default(made: Schema) -> None:
     if isinstance(default, dict):
         named = any(tag in default for tag in TAGS)
         default = {key: each for key, each in default.items() if named and each not in (None, [])}
-    if isinstance(default, list):  # a part in a list says what it has
-        default = [_said(each) if isinstance(each, dict) else each for each in default]
+    if isinstance(default, list):  # tables in a list, without values that are not given
+        default = [
+            {k: v for k, v in each.items() if v not in (None, [])}
+            if isinstance(each, dict)
+            else each
+            for each in default
+        ]
     limited = isinstance(default, float | int) and (
         default <= made.get("exclusiveMinimum", float("-inf"))
         or default < made.get("minimum", float("-inf"))
