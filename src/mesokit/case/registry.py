@@ -150,7 +150,7 @@ class Family:
 
         Within a part that has another of its family in it, only those that have none.
         """
-        within, self._described = self._described, True
+        within = self._described
         known: dict[Any, Any] = {}
         for name in self.names():
             part: Any = self.find(name)
@@ -158,6 +158,7 @@ class Family:
             nested = any(self in (field.annotation, *field.metadata) for field in fields)
             if part and not (within and nested):
                 known[name] = part.__pydantic_core_schema__
+        self._described = True
         try:
             return handler(core_schema.tagged_union_schema(known, self.tag))
         finally:
