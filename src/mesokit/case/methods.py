@@ -37,7 +37,7 @@ def templates() -> dict[str, Any]:
     import importlib.resources
     import importlib.util
 
-    files = []
+    files: list[Any] = []
     for module in modules().values():
         package = module.rpartition(".")[0]  # which is not imported
         spec = importlib.util.find_spec(package) if package else None

@@ -201,7 +201,7 @@ class Family:
         except ValidationError as error:
             under_name: list[InitErrorDetails] = [
                 {
-                    "type": PydanticCustomError(entry["type"], entry["msg"], entry.get("ctx")),  # type: ignore[arg-type]
+                    "type": PydanticCustomError(entry["type"], entry["msg"], entry.get("ctx")),
                     "loc": (name, *entry["loc"]),
                     "input": entry["input"],
                 }

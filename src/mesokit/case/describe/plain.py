@@ -45,8 +45,9 @@ def plain_schemas(components: Mapping[str, Any]) -> tuple[dict[str, Schema], dic
     schemas = {}
     for name in components:
         schema = found[name, _inputs]
-        place = schema.get("$ref")  # of a schema that is only a reference
-        schemas[name] = _plain(definitions[place.removeprefix(PLACE)] if place else schema)
+        if "$ref" in schema:  # and no more
+            schema = definitions[schema["$ref"].removeprefix(PLACE)]
+        schemas[name] = _plain(schema)
     return (
         schemas,
         {name: _plain(schema) for name, schema in definitions.items()},

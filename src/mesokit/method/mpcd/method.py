@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mesokit.case.box import AXES
 from mesokit.case.component import param
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
@@ -22,7 +23,7 @@ from mesokit.method.mpcd.columns import columns
 from mesokit.method.mpcd.derived import build_up, heat_caveat, summary
 from mesokit.method.mpcd.expected.displacement import Displacement
 from mesokit.method.mpcd.expected.neighbours import NeighboursInFluid
-from mesokit.method.mpcd.expected.setting import aperiodic_axes
+from mesokit.method.mpcd.expected.setting import closed_axes
 from mesokit.method.mpcd.expected.velocities import Velocities
 from mesokit.method.mpcd.expected.velocity_memory import VelocityMemory
 from mesokit.method.mpcd.fluid import Fluid
@@ -137,7 +138,7 @@ METHOD = Method(
     check=combinations.check,
     groups=groups,
     bonds=bonded_pairs,
-    enclosure=Enclosure(aperiodic_axes, solids),
+    enclosure=Enclosure(lambda c: closed_axes(c) | {AXES.index(a) for a in c.box.open}, solids),
     timestep=lambda case: float(case.fluid.timestep),
     summary=summary,
     initial=InitialState(_first_state, _start, ARRAYS, _starts, "fluid.start.run"),

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mesokit import theory
 from mesokit.case.box import AXES
 from mesokit.case.component import name_of
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.samples.from_file import FromFile
-from mesokit.geometry.solids.solids import solids_of
+from mesokit.geometry.solids.solids import slit_of, solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
 from mesokit.method.mpcd.expected.molecules import (
@@ -199,8 +201,12 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
             f"acceleration x length/(kT/m) = {pressed[1]:.2g} (above {COMPRESSED:g}); measure it "
             "with density-gradient, lower the force"
         )
-    slip = setting.slip_length(case)
-    if slip is not None and slip > SLIPPERY and (numbers.flow_speed or sheared):
+    plates, rule, slip = slit_of(case), fluid.collision.in_theory(), 0.0
+    beside = plates is not None and not plates.slips and plates.virtual == "extrapolate"
+    if beside and rule is not None and not setting.caveat(case) and fluid.thermostat.in_theory:
+        with contextlib.suppress(ValueError):  # of rules that conserve angular momentum
+            slip = theory.virtual_gas_slip(**rule, **setting.gas(case)._asdict())
+    if slip > SLIPPERY and (numbers.flow_speed or sheared):
         yield (
             f"wall: in so thin a fluid plates slip, by a length of some {slip:.2g} cells: virtual "
             "particles know nothing of its stress; more particles or a shorter timestep help"

@@ -70,7 +70,11 @@ def group_of(case: Case, of: str, kind: int | str | None = 1) -> Group:
     molecule, solutes = case.fluid.molecule, case.solutes
     if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
         if case.fluid.species and kind is not None:
-            return _species(case, kind)
+            kinds = case.groups[0].kinds
+            if not isinstance(kind, int) or not 1 <= kind <= len(kinds):
+                raise CaseError(f"kind = {show(kind)}: expected 1 to {len(kinds)} (fluid.species)")
+            before = sum(one.number for one in kinds[: kind - 1])
+            return Group(before, 1, kinds[kind - 1].number, None)
         if kind not in (None, 1, FLUID):
             raise CaseError(
                 f"kind = {show(kind)}: only with of = 'beads', 'centres' or 'ends', or with "
@@ -99,13 +103,6 @@ def kind_of(case: Case, group: Group) -> int | str:
     kinds = range(len(case.solutes.polymers))
     starts = [case.particles + case.solutes.first_bead(kind) for kind in kinds]
     return 1 + starts.index(group.first)
-
-
-def _species(case: Case, kind: int | str) -> Group:
-    kinds = case.groups[0].kinds
-    if not isinstance(kind, int) or not 1 <= kind <= len(kinds):
-        raise CaseError(f"kind = {show(kind)}: expected 1 to {len(kinds)} (fluid.species)")
-    return Group(sum(one.number for one in kinds[: kind - 1]), 1, kinds[kind - 1].number, None)
 
 
 def beads_of(case: Case, wanted: int | None = None, kind: int | str = 1) -> NDArray[np.int64]:
