@@ -272,12 +272,8 @@ def obstructed(case: Case) -> bool:
 
 def quiet_axes(case: Case) -> tuple[int, ...]:
     """Axes that no wall closes and along which nothing flows."""
-    closed = closed_axes(case)
-    return tuple(
-        axis
-        for axis in range(case.box.dimension)
-        if axis not in closed and flow(case, axis).kind == "rest"
-    )
+    unwalled = sorted({*range(case.box.dimension)} - closed_axes(case))
+    return tuple(axis for axis in unwalled if flow(case, axis).kind == "rest")
 
 
 class Flow(NamedTuple):
