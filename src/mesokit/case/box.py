@@ -211,9 +211,7 @@ def at_time(box, time):
     """The box at a time: under shear its images have moved."""
 
 
-@at_time.register(Periodic)
-def _(box, time):
-    return box
+at_time.register(Periodic)(lambda box, time: box)
 
 
 @at_time.register(Sheared)
@@ -286,14 +284,10 @@ def _(box, r, v, crossed):
     return r, with_item(v, 0, v[0] + crossed[1] * box.speed)
 
 
-@slide.register(Periodic)
-def _(box, r, v, shift):
-    return r, v, ()
+slide.register(Periodic)(lambda box, r, v, shift: (r, v, ()))
 
 
-@slide.register(*SLIDING)
-def _(box, r, v, shift):
-    return fold(box, r, v, shift)
+slide.register(*SLIDING)(lambda box, r, v, shift: fold(box, r, v, shift))
 
 
 @generic
@@ -301,9 +295,7 @@ def peculiar(box, r, v):
     """Velocity relative to the imposed flow."""
 
 
-@peculiar.register(Periodic)
-def _(box, r, v):
-    return v
+peculiar.register(Periodic)(lambda box, r, v: v)
 
 
 @peculiar.register(*SLIDING)

@@ -6,7 +6,7 @@ import math
 from typing import Literal, NamedTuple
 
 from mesokit.case.component import component, param, tag
-from mesokit.potential.protocol import Pair, breaks, central
+from mesokit.potential.protocol import Pair, central
 
 
 @component
@@ -77,8 +77,3 @@ def _(potential, square):
     force_over_r = 6.0 * potential.four * sixth * (2.0 * sixth - 1.0) * inverse / potential.square
     near = square < potential.limit
     return (energy if near else 0.0), (force_over_r if near else 0.0)
-
-
-@breaks.register(TwelveSix)
-def _(potential, square):
-    return False

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.given.file import FileName, FromContents
 from mesokit.errors import CaseError
-from mesokit.potential.protocol import Pair, breaks, central
+from mesokit.potential.protocol import Pair, central
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.pointer import address, real
 
@@ -259,8 +259,3 @@ def _(potential, square):
         energy -= 0.5 * force_over_r * (square - potential.near)
     inside = square < potential.far
     return (energy if inside else 0.0), (force_over_r if inside else 0.0)
-
-
-@breaks.register(Cubics)
-def _(potential, square):
-    return False

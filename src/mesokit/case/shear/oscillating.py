@@ -54,9 +54,7 @@ def waved(history, time):
     return sincos_turn(turns - floor(turns))
 
 
-@speed.register(Cosine)
-def _(history, time):
-    return history.fastest * waved(history, time)[1]
+speed.register(Cosine)(lambda history, time: history.fastest * waved(history, time)[1])
 
 
 @slid.register(Cosine)

@@ -81,14 +81,8 @@ def _(rule, counter, key, m, v, r):
     return w, (scaled(m, w) + scaled(m, r) + scaled(m, second_moment(r)) + scaled(m, lost))
 
 
-@freedom.register(ATPlusA2)
-def _(rule, n):
-    return 2.0 * (n - 1.0) - 1.0
-
-
-@freedom.register(ATPlusA3)
-def _(rule, n):
-    return 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0)
+freedom.register(ATPlusA2)(lambda rule, n: 2.0 * (n - 1.0) - 1.0)
+freedom.register(ATPlusA3)(lambda rule, n: 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0))
 
 
 @coefficients.register(ATPlusA2)

@@ -39,21 +39,13 @@ class Uncollided(NamedTuple):
     """No collision."""
 
 
-@contribute.register(Uncollided)
-def _(rule, counter, key, m, v, r):
-    return v, ()
+contribute.register(Uncollided)(lambda rule, counter, key, m, v, r: (v, ()))
 
 
-@freedom.register(Uncollided)
-def _(rule, n):
-    return 0.0
+freedom.register(Uncollided)(lambda rule, n: 0.0)
 
 
-@coefficients.register(Uncollided)
-def _(rule, thermostat, variate, chance, cell):
-    return (0.0,)
+coefficients.register(Uncollided)(lambda rule, thermostat, variate, chance, cell: (0.0,))
 
 
-@collide.register(Uncollided)
-def _(rule, c, v, r):
-    return v
+collide.register(Uncollided)(lambda rule, c, v, r: v)

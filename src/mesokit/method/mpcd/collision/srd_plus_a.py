@@ -101,14 +101,8 @@ def _(rule, counter, key, m, v, r):
     return v, scaled(m, r) + scaled(m, second_moment(r)) + tensor
 
 
-@freedom.register(SRDPlusA2)
-def _(rule, n):
-    return 2.0 * (n - 1.0) - 1.0
-
-
-@freedom.register(SRDPlusA3)
-def _(rule, n):
-    return 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0)
+freedom.register(SRDPlusA2)(lambda rule, n: 2.0 * (n - 1.0) - 1.0)
+freedom.register(SRDPlusA3)(lambda rule, n: 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0))
 
 
 # Below, w are the rotated velocities relative to the mean, Omega their rigid rotation and omega

@@ -31,6 +31,4 @@ class Zero(NamedTuple):
     """No acceleration."""
 
 
-@acceleration.register(Zero)
-def _(field, r):
-    return ()
+acceleration.register(Zero)(lambda field, r: ())

@@ -328,6 +328,4 @@ def interpolated(field, r):
     return in_square if len(r) == 2 else in_cube
 
 
-@acceleration.register(Nodes)
-def _(field, r):
-    return interpolated(field, r)
+acceleration.register(Nodes)(lambda field, r: interpolated(field, r))

@@ -87,9 +87,7 @@ def factor(change, time):
     """The factor at a time since the start of the warm-up."""
 
 
-@acceleration.register(Scaled)
-def _(field, r):
-    return times(field.factor, acceleration(field.field, r))
+acceleration.register(Scaled)(lambda field, r: times(field.factor, acceleration(field.field, r)))
 
 
 @by_type

@@ -126,9 +126,7 @@ def _grow(
     start = there.number
     there.add(first)
     came: dict[int, Floats] = {}  # the bond by which each bead was reached
-    links = (
-        molecule.tree if isinstance(molecule, FreeMolecule) else molecule.bonds if molecule else ()
-    )
+    links = molecule.tree if isinstance(molecule, FreeMolecule) else getattr(molecule, "bonds", ())
     for a, b in links:  # from a bead to the next one in order
         bonds = pool[(random.units(AT_ONCE)[0] * len(pool)).astype(int)]
         if molecule and molecule.bending is not None:
