@@ -1,4 +1,4 @@
-"""What `check` and `run` warn of: cases that can run, and may not give what was meant."""
+"""Warnings of `check` and `run`: cases that can run, and may not give what was meant."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ STRONG = 0.3  # thermal velocities that a force may add in a timestep
 
 
 def cautions(case: Case, numbers: Derived, across: int) -> Iterator[str]:
-    """What one should know before a run; `across` is the number of the axis across the flow."""
+    """Warnings before a run; `across` is the number of the axis across the flow."""
     yield from _method_warnings(case, numbers)
     yield from _solid_warnings(case)
     yield from _flow_warnings(case, numbers, across)
@@ -107,8 +107,7 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
         )
     if transport is None:
         reason = setting.caveat(case) or "no formula for this fluid"
-        lacking = _without_theory(case)
-        if lacking:
+        if lacking := _without_theory(case):
             yield f"transport coefficients: {reason}; {lacking}"
     elif case.box.dimension == 2 and _above(7, transport.dynamic_viscosity, 3):
         yield (
@@ -222,12 +221,10 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     random = case.solutes is not None and case.solutes.solvent == "random"
     for axis, acceleration in zip(AXES, setting.uniform_acceleration(case).tolist(), strict=False):
         if acceleration and not case.walls and not random:
+            heats = "" if setting.isothermal(case) else " (without a thermostat it also heats)"
             yield (
-                f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
-                "walls it speeds up for ever (without a thermostat it also heats)"
-                if not setting.isothermal(case)
-                else f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
-                "walls it speeds up for ever"
+                f"fluid.force.acceleration: nothing holds the fluid along {axis}: without walls it "
+                f"speeds up for ever{heats}"
             )
         elif acceleration and AXES.index(axis) in setting.closed_axes(case):
             drop = fluid.mass * abs(acceleration) * case.box.size[across] / fluid.kT
@@ -248,8 +245,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
             * most
         )
     if numbers.reynolds is not None:
-        # as it is shown: 1.4 is not above 1.4
-        shown = float(f"{numbers.reynolds:.2g}")
+        shown = float(f"{numbers.reynolds:.2g}")  # 1.4 is not above 1.4
         if numbers.flow == PIPE and shown > TURBULENT:
             yield (
                 f"Reynolds number {shown:g}: above some {TURBULENT:g} the flow along a pipe is "
@@ -267,7 +263,16 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 f"{math.ceil(TIMES * numbers.steady_time / fluid.timestep)} steps from rest to its "
                 "steady state; observables will average over the start"
             )
-    yield from _start_of_shear(case, numbers)
+    wait = 0
+    if numbers.relaxation is not None and (case.box.steady_rate or case.box.oscillation):
+        wait = math.ceil(3 * numbers.relaxation[0] / fluid.timestep)
+    # molecules start at rest, and take a few relaxation times to follow the shear
+    if case.run.warmup < wait and case.run.steps and case.observe and fluid.start.run is None:
+        yield (
+            f"run.warmup = {case.run.warmup}: molecules need about {wait} steps (3 relaxation "
+            "times) until shear has turned and stretched them; observables will average over the "
+            "start"
+        )
 
 
 def _net_pull(case: Case) -> Iterator[str]:
@@ -283,20 +288,6 @@ def _net_pull(case: Case) -> Iterator[str]:
         yield (
             f"solutes.pulls: together they pull along {' and '.join(along)}, and nothing holds the "
             "fluid: without walls or a second force the whole box speeds up for ever"
-        )
-
-
-def _start_of_shear(case: Case, numbers: Derived) -> Iterator[str]:
-    """Molecules start at rest, and take a few relaxation times to follow the shear."""
-    start = case.fluid.start.run
-    if numbers.relaxation is None or not (case.box.steady_rate or case.box.oscillation):
-        return
-    wait = math.ceil(3 * numbers.relaxation[0] / case.fluid.timestep)
-    if case.run.warmup < wait and case.run.steps and case.observe and start is None:
-        yield (
-            f"run.warmup = {case.run.warmup}: molecules need about {wait} steps (3 relaxation "
-            "times) until shear has turned and stretched them; observables will average over the "
-            "start"
         )
 
 

@@ -43,7 +43,11 @@ class Polymer:
     )
 
     def __post_init__(self) -> None:
-        self._check_free()
+        if self.topology == "free":
+            self._read_links()
+        for key in ("bonds", "angles") if self.topology != "free" else ():
+            if getattr(self, key) is not None:
+                raise ValueError(f"{key}: only with topology = 'free'")
         if self.length == 1:
             if self.topology != "chain" or self.arms is not None:
                 raise ValueError(f"topology = {self.topology!r}: a monomer is a chain")
@@ -54,13 +58,8 @@ class Polymer:
         if self.name is not None and (len(self.name) < 2 or not self.name.isprintable()):
             raise ValueError(f"name = {self.name!r}: expected two letters or more")
 
-    def _check_free(self) -> None:
+    def _read_links(self) -> None:
         """Lists of links that are read once, and make one molecule."""
-        if self.topology != "free":
-            for key in ("bonds", "angles"):
-                if getattr(self, key) is not None:
-                    raise ValueError(f"{key}: only with topology = 'free'")
-            return
         if self.bonds is None:
             raise ValueError("bonds: missing; topology = 'free' needs them")
         for key, columns in (("bonds", 2), ("angles", 3)):
@@ -69,8 +68,7 @@ class Polymer:
                 rows = read_links(given, columns) if isinstance(given, str) else given
             except ValueError as error:
                 raise ValueError(f"{key} = {error}") from None
-            wrong = problem(rows or (), self.length, columns)
-            if wrong:
+            if wrong := problem(rows or (), self.length, columns):
                 raise ValueError(f"{key}: {wrong}")
             object.__setattr__(self, key, rows)
         parts = linked_parts(self.pairs_of_beads, self.length)
