@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from pydantic import field_validator
@@ -97,10 +98,7 @@ class Box:
     @property
     def volume(self) -> int:
         """Area or volume: the number of cells where there are cells."""
-        cells = 1
-        for length in self.size:
-            cells *= length
-        return cells
+        return math.prod(self.size)
 
     @property
     def history(self) -> ShearHistory | None:

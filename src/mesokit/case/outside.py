@@ -28,7 +28,7 @@ def outside_parts(case: Any) -> list[dict[str, str]]:
 
 
 def is_outside(part: Any) -> bool:
-    """Whether mesokit does not bring the class of a part."""
+    """True if the class of a part is not of mesokit."""
     return type(part).__module__.split(".")[0] != "mesokit"
 
 
@@ -44,15 +44,12 @@ def blaming(case: Any) -> Iterator[None]:
         if not parts:
             raise
         names = ", ".join(f"{part['name']!r} ({part['class']})" for part in parts)
-        raise RunError(f"{names}, not of mesokit: {_gist(error)}") from error
-
-
-def _gist(error: Exception) -> str:
-    """One line of what may be the many of a compiler: the last that says what was wrong."""
-    text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))  # numba's are coloured where it can
-    lines = [f"{type(error).__name__}: {text}".splitlines()[0], *text.splitlines()]
-    found = [line for line in lines if re.search(r"\b(?!Typing)[A-Z][a-z]\w*Error: ", line)]
-    return " ".join((found or lines)[-1 if found else 0].split())
+        # Of many lines of a compiler, the last that names an error; numba's may be coloured.
+        text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
+        lines = [f"{type(error).__name__}: {text}".splitlines()[0], *text.splitlines()]
+        found = [line for line in lines if re.search(r"\b(?!Typing)[A-Z][a-z]\w*Error: ", line)]
+        gist = " ".join((found or lines)[-1 if found else 0].split())
+        raise RunError(f"{names}, not of mesokit: {gist}") from error
 
 
 def require_parts(record: Any) -> None:

@@ -115,10 +115,8 @@ def compare(
         if dimension in law.dimensions:
             here, there = law.formula(*simulated), law.formula(*real)
             known = flows or name == "Schmidt"
-            values = _known(here if known else math.nan), _known(there if known else math.nan)
-            found.append(Number(name, *values, _known(there / here), law.meaning))
+            values = here if known else math.nan, there if known else math.nan, there / here
+            found.append(
+                Number(name, *(x if math.isfinite(x) else None for x in values), law.meaning)
+            )
     return tuple(found)
-
-
-def _known(x: float) -> float | None:
-    return x if math.isfinite(x) else None

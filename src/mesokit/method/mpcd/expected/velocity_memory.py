@@ -37,7 +37,9 @@ class VelocityMemory:
                 self.coefficients.diffusion, fluid.timestep, fluid.kT, fluid.mass
             )
             return np.asarray(theory.vacf_molecular_chaos(steps, g, fluid.kT, fluid.mass))
-        if self._keep_velocities():
+        case = self.case
+        bound = case.walls or fluid.molecule is not None or fluid.mixed
+        if not (fluid.collision.acts or bound or fluid.force.acts):  # velocities never change
             return np.full(len(steps), fluid.kT / fluid.mass)
         return None
 
@@ -45,12 +47,6 @@ class VelocityMemory:
         """Whose law it is."""
         chaos = self.case.fluid.collision.acts
         return setting.chaos_label(self.case) if chaos else "free flight"
-
-    def _keep_velocities(self) -> bool:
-        """Whether particles fly freely, and so for ever as they started."""
-        case = self.case
-        bound = case.walls or case.fluid.molecule is not None or case.fluid.mixed
-        return not (case.fluid.collision.acts or bound or case.fluid.force.acts)
 
     def level(self, error: float, runs: int) -> tuple[float, float] | None:
         """kT/m, and the error of the value at lag 0 with what a start adds to it; None of

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.method.mpcd.solute.free import spanning
 from mesokit.method.mpcd.start.draws import Draws
+from mesokit.method.mpcd.topology import pairs
 from mesokit.potential.protocol import angular, central
 from mesokit.potential.thermal import lengths, mean_square
 
@@ -124,12 +125,10 @@ def _relaxed(molecule: Molecule, places: Floats, kT: float) -> NDArray[np.bool_]
     """Molecules none of whose beads have too much energy, by bonds not drawn by their energy (those
     that close a ring, and those of an octant) or by repulsion."""
     good = np.ones(len(places), bool)
-    pair = molecule.pair.kernel() if molecule.pair is not None else None
-    if pair is not None:
-        limit = nearest_of(pair, kT)
-        for i in range(molecule.length):
-            for j in range(i + 1, molecule.length):
-                good &= np.linalg.norm(places[:, j] - places[:, i], axis=1) > limit
+    if molecule.pair is not None:
+        limit = nearest_of(molecule.pair.kernel(), kT)
+        for i, j in pairs(molecule.length):
+            good &= np.linalg.norm(places[:, j] - places[:, i], axis=1) > limit
     if molecule.topology == "ring" or molecule.conformation == "octant":
         for a, b in molecule.bonds:
             length = np.linalg.norm(places[:, b] - places[:, a], axis=1)
