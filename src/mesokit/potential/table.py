@@ -72,14 +72,9 @@ def _checked(rows: list[tuple[int, list[float]]]) -> Floats:
     if len(rows) < FEWEST:
         raise ValueError(f"{len(rows)} rows; expected {FEWEST} or more")
     values = np.array([row for _, row in rows])
-    if width == 3:
-        _check_forces(values, [number for number, _ in rows])
-    return values
-
-
-def _check_forces(values: Floats, lines: list[int]) -> None:
-    """That the force is minus the slope of the energy. Raises ValueError for the worst row."""
-    r, energy, force = values.T
+    if width == 2:
+        return values
+    r, energy, force = values.T  # which must be minus the slope of the energy
     work = -np.diff(r) * (force[1:] + force[:-1]) / 2.0
     change = np.diff(energy)
     off = np.abs(work - change)
@@ -87,9 +82,10 @@ def _check_forces(values: Floats, lines: list[int]) -> None:
     worst = int(np.argmax(off / np.maximum(allowed, 1e-300)))
     if off[worst] > allowed[worst]:
         raise ValueError(
-            f"line {lines[worst + 1]}: from the row before U changes by {change[worst]:g}, by the "
-            f"forces it would be {work[worst]:g}; expected F = -dU/dr"
+            f"line {rows[worst + 1][0]}: from the row before U changes by {change[worst]:g}, by "
+            f"the forces it would be {work[worst]:g}; expected F = -dU/dr"
         )
+    return values
 
 
 Floats = NDArray[np.float64]
@@ -178,10 +174,9 @@ class Table(FromContents, Pair):
         """What the file holds: r, U and maybe F. Raises CaseError."""
         try:
             return rows_of(self.contents.decode(), self.section)
-        except UnicodeDecodeError:
-            raise self.wrong("expected a text file") from None
         except ValueError as error:
-            raise self.wrong(str(error)) from None
+            decoded = not isinstance(error, UnicodeDecodeError)
+            raise self.wrong(str(error) if decoded else "expected a text file") from None
 
     @property
     def reach(self) -> float:
@@ -207,10 +202,8 @@ class Table(FromContents, Pair):
 
         r, energy, *force = self.rows.T
         lift = energy[-1] if self.shift else 0.0
-        if force:
-            curve = CubicHermiteSpline(r, energy - lift, -force[0])
-        else:
-            curve = CubicSpline(r, energy - lift)
+        level = energy - lift
+        curve = CubicHermiteSpline(r, level, -force[0]) if force else CubicSpline(r, level)
         squares = np.linspace(r[0] ** 2, r[-1] ** 2, INTERVALS + 1)
         places = np.clip(np.sqrt(squares), r[0], r[-1])
         value = curve(places)
@@ -248,11 +241,8 @@ def _(potential, square):
     place = min(max((square - potential.near) * potential.per, 0.0), INTERVALS - 1e-9)
     first = int(place)
     t, c = place - first, 4 * first
-    b, quadratic, cubic = (
-        number(potential.table, c + 1),
-        number(potential.table, c + 2),
-        number(potential.table, c + 3),
-    )
+    b, quadratic = number(potential.table, c + 1), number(potential.table, c + 2)
+    cubic = number(potential.table, c + 3)
     energy = number(potential.table, c) + t * (b + t * (quadratic + t * cubic))
     force_over_r = -2.0 * potential.per * (b + t * (2.0 * quadratic + t * 3.0 * cubic))
     if square < potential.near:

@@ -122,7 +122,7 @@ class SI:
         scales.append(("whole run", f"{self.duration:.4g} s", ""))
         if self.speed is not None:
             scales.append(("flow", f"{self.speed:.4g} m/s", f"across {self.size:.4g} m"))
-        numbers = [("", "simulated", "real", "", "")]
+        numbers: list[tuple[str, ...]] = [("", "simulated", "real", "", "")]
         for n in self.numbers:
             values = ("-" if x is None else f"{x:.3g}" for x in (n.simulated, n.real))
             numbers.append((n.name, *values, n.verdict, n.meaning))
