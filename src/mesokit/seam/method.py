@@ -1,4 +1,4 @@
-"""What a method of simulation is: all that the rest of the package asks of it."""
+"""The record of a method of simulation, by which the rest of the package uses it."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from mesokit.case import methods
 from mesokit.case.amounts import duration_text
 from mesokit.case.component import show
 from mesokit.processes.cores import usable_cores
+from mesokit.seam.observable import Observable
 from mesokit.seam.units import Units
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ class InitialState(NamedTuple, Generic[E, S]):
 
 
 class Enclosure(NamedTuple):
-    """What shuts particles in: numbers of the axes that are not periodic, and the solids that
+    """Enclosure of particles: numbers of the axes that are not periodic, and the solids that
     pictures show (`mesokit.geometry.solids.solids.Solids`) or None, both of a case."""
 
     closed_axes: Callable[[Case], set[int]] = lambda case: set()
@@ -196,7 +197,7 @@ class Method:
     engine: Callable[[Case, int, Sequence[str]], Engine]
     box: tuple[str, ...] = ()
     keys: Mapping[str, str] = field(default_factory=dict)
-    expected: Mapping[str, Callable[[Case, Any], Any]] = field(default_factory=dict)
+    expected: Mapping[str, Callable[[Case, Observable], Any]] = field(default_factory=dict)
     enclosure: Enclosure = NOT_ENCLOSED
     bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
     keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
@@ -217,22 +218,16 @@ def method_of(case: Case) -> Method:
 def summary_of(case: Case, threads: int | None = None) -> Summary:
     """What follows from a case, by its method; of replicas how long all of them take."""
     found = _of_all_replicas(case, threads)
-    rows = [
-        (name, value, note + _uncounted(case) if name == "run time" else note)
-        for name, value, note in found.rows
-    ]
-    return found._replace(rows=tuple(rows))
-
-
-def _uncounted(case: Case) -> str:
-    """What an estimate of the run time hardly counts: samples, where they are frequent."""
     often = {one.label: one.every for one in case.observe if one.every < SELDOM}
     if not often:
-        return ""
+        return found
+    # the estimate of the run time hardly counts samples, which are frequent here
     every = min(often.values())
     what = next(iter(often)) if len(often) == 1 else f"{len(often)} observables"
     steps = "every step" if every == 1 else f"every {every} steps"
-    return f"; samples of {what}, up to {steps}, may add much to it"
+    more = f"; samples of {what}, up to {steps}, may add much to it"
+    rows = [(*row[:2], row[2] + more if row[0] == "run time" else row[2]) for row in found.rows]
+    return found._replace(rows=tuple(rows))
 
 
 def _of_all_replicas(case: Case, threads: int | None) -> Summary:
