@@ -98,7 +98,8 @@ class Case(Shown):
         return {"title": "case", "words": words, "rows": rows, "text": text, "fold": "all defaults"}
 
     def __reduce__(self) -> Any:
-        return _again, ({name: getattr(self, name) for name in type(self)._fields()},)
+        fields = {name: getattr(self, name) for name in type(self)._fields()}
+        return functools.partial(Case, **fields), ()
 
     @property
     def groups(self) -> tuple[Group, ...]:
@@ -150,7 +151,7 @@ class Case(Shown):
             except CaseError as error:
                 raise CaseError(f"run.{error}") from None
         made = case_class(method_named(run))
-        keys: Mapping[str, str] = made._method.keys
+        keys: dict[str, str] = made._method.keys
         for field, key in keys.items():
             if field in data:
                 raise CaseError(f"{field}: unknown key; did you mean [[{key}]]?")
@@ -207,10 +208,6 @@ def method_named(run: Any) -> str:
         return methods.DEFAULT
     known = given in methods.METHODS or given in methods.modules()  # which looks at all packages
     return given if known else methods.DEFAULT
-
-
-def _again(fields: dict[str, Any]) -> Case:
-    return Case(**fields)
 
 
 def _require_sections(made: type[Case], given: Mapping[str, Any], where: str = "") -> None:

@@ -116,7 +116,6 @@ def compare(
             here, there = law.formula(*simulated), law.formula(*real)
             known = flows or name == "Schmidt"
             values = here if known else math.nan, there if known else math.nan, there / here
-            found.append(
-                Number(name, *(x if math.isfinite(x) else None for x in values), law.meaning)
-            )
+            one, other, factor = (x if math.isfinite(x) else None for x in values)
+            found.append(Number(name, one, other, factor, law.meaning))
     return tuple(found)

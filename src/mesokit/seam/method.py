@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 
 from mesokit.case import methods
 from mesokit.case.amounts import duration_text
+from mesokit.case.case import Case
 from mesokit.case.component import show
+from mesokit.case.trajectory import Group
 from mesokit.processes.cores import usable_cores
+from mesokit.seam.engine import Engine
 from mesokit.seam.observable import Observable
 from mesokit.seam.units import Units
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.case.trajectory import Group
     from mesokit.geometry.solids.solids import Solids
-    from mesokit.seam.engine import Engine
 
 E = TypeVar("E")  # engine of a method
 S = TypeVar("S")  # state that it starts from

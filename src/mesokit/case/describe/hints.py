@@ -1,7 +1,5 @@
 """Type hints of components: as type checkers see them, and as `help` shows them."""
 
-from __future__ import annotations
-
 import dataclasses
 import inspect
 import re

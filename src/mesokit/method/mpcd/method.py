@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.case.component import param
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
@@ -35,13 +36,12 @@ from mesokit.method.mpcd.observe.shared.temperature_in_slices import Temperature
 from mesokit.method.mpcd.si import convert
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.processes.world import world
+from mesokit.seam.engine import Engine
 from mesokit.seam.method import Enclosure, InitialState, Method
 from mesokit.seam.units import CELLS
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
     from mesokit.method.mpcd.start.first_state import FirstState
-    from mesokit.seam.engine import Engine
 
 
 def _first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:

@@ -6,7 +6,7 @@ import functools
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import component, name_of, nearest, one_of, param, show
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
+from mesokit.method.mpcd.fluid import Fluid
 from mesokit.method.mpcd.molecule import MOST_SUBSTEPS, PHASE, Molecule
 from mesokit.method.mpcd.solute.external import MagneticField, Pull, Trap
 from mesokit.method.mpcd.solute.free import FreeMolecule
@@ -23,9 +24,6 @@ from mesokit.method.mpcd.topology import Links
 from mesokit.potential import Angle, Bond, Pair
 from mesokit.potential.several import several
 from mesokit.potential.thermal import effective_radius, excluded_volume, stiffness
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.fluid import Fluid
 
 
 @component

@@ -1,16 +1,14 @@
 """Warnings of `check` and `run`: cases that can run, and may not give what was meant."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mesokit import theory
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.case.component import name_of
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.warnings import run_warnings
@@ -26,11 +24,7 @@ from mesokit.method.mpcd.expected.molecules import (
     without_solutes,
 )
 from mesokit.method.mpcd.molecule import COARSE
-from mesokit.method.mpcd.numbers import PIPE, TIMES
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.numbers import Derived
+from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 
 COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solids
 SLIPPERY = 0.03  # slip length in cells

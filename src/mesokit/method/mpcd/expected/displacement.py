@@ -1,13 +1,12 @@
 """Theory of the mean square displacement of particles and molecules."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
@@ -23,11 +22,7 @@ from mesokit.method.mpcd.expected.molecules import (
 )
 from mesokit.method.mpcd.expected.selection import group_of, kind_of
 from mesokit.method.mpcd.expected.traps import LEVEL, held, trapped
-from mesokit.method.mpcd.molecule import FLUID
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.molecule import FLUID, Molecule
 
 Array = NDArray[np.floating[Any]]
 Integers = NDArray[np.int64]

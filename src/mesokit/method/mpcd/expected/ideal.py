@@ -1,15 +1,14 @@
 """What ideal molecules are at rest, and how beads drift and spread where nothing is in the way."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     ends_at_rest,
@@ -22,11 +21,8 @@ from mesokit.method.mpcd.expected.molecules import (
 )
 from mesokit.method.mpcd.expected.selection import Group, of_fluid
 from mesokit.method.mpcd.expected.traps import at_rest, pulls_on, trapped
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.potential.thermal import mean_square
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
 
 
 def undisturbed(case: Case) -> bool:

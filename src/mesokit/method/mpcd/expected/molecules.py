@@ -1,15 +1,14 @@
 """Theory of molecules: modes of their springs, relaxation and diffusion."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.selection import (
@@ -18,12 +17,7 @@ from mesokit.method.mpcd.expected.selection import (
     molecule_of,
     of_fluid,
 )
-from mesokit.method.mpcd.molecule import FLUID
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
-
+from mesokit.method.mpcd.molecule import FLUID, Molecule
 
 Array = NDArray[np.floating[Any]]
 FAST = 0.5  # radians of a bond in one flight: from here on Rouse's times are off by a tenth

@@ -1,21 +1,16 @@
 """Particles, beads or molecules of an observable, and whether they are independent of others."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.molecule import FLUID
+from mesokit.method.mpcd.molecule import FLUID, Molecule
 from mesokit.statistics import spread_ids
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
 
 KIND = (
     "which molecules: name or number, from 1, of solutes.polymers; 'fluid': those of the fluid, "

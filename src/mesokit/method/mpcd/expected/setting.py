@@ -1,23 +1,19 @@
 """Properties of a case for theory: coefficients, the state at rest, and the steady flow."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import name_of
 from mesokit.geometry import shape_protocol as walls
+from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
 from mesokit.method.mpcd.collision import Gas
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.geometry.shape.plates import Plates
 
 Array = NDArray[np.floating[Any]]
 THIN = 1.0  # particles per cell: of fewer, viscosities were seen to be 14 % off and more

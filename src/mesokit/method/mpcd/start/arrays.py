@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.given.array_file import EXPECTED, array_in_file, is_plain
 from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError, MesokitError
@@ -17,7 +18,6 @@ from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.start.section import Start
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
     from mesokit.processes.world import World
 
 

@@ -7,24 +7,19 @@ relaxation times. They are those of D. Toneian, diploma thesis, TU Wien (2015), 
 compare with.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solute.free import spanning
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.topology import pairs
 from mesokit.potential.protocol import angular, central
 from mesokit.potential.thermal import lengths, mean_square
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.molecule import Molecule
 
 Floats = NDArray[np.float64]
 TRIES = 500  # to place the molecules that do not fit where they were drawn

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io import checkpoint
@@ -17,7 +18,6 @@ from mesokit.method.mpcd.start.snapshot import fitted, fitted_beads
 from mesokit.processes.alone import Alone
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
     from mesokit.processes.world import World
 
@@ -119,7 +119,6 @@ def _last_fluid(
     case: Case, path: str, same: Callable[[Case], tuple[str, Any]]
 ) -> tuple[Numbers, dict[str, Any]]:
     """An earlier run and its last state, if its box and `same` are those of the case."""
-    from mesokit.case.case import Case
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
     directory = RunDirectory.existing(path)

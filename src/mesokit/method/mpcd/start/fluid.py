@@ -6,8 +6,6 @@ chance, and is put elsewhere otherwise. The attraction of a well is left out: th
 as dense as far away.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -11,20 +11,17 @@ import itertools
 import math
 from collections import defaultdict
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solute.free import FreeMolecule, phantom
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.method.mpcd.start.conformation import first_bonds, nearest_of, turned
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.scalar.random import INITIAL_SOLUTES
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.molecule import Molecule
-    from mesokit.method.mpcd.solutes import Solutes
 
 Floats = NDArray[np.float64]
 InFluid = Callable[[Floats], NDArray[np.bool_]]

@@ -1,22 +1,16 @@
 """Particles as another program has written them, and whether they are those of a case."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.conformation import connected
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
 
 Numbers = NDArray[np.int64]
 SHOWN = 4  # sizes of molecules that a message lists
