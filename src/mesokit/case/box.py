@@ -132,20 +132,17 @@ class Box:
     @property
     def steady_rate(self) -> float:
         """The shear rate if it is the same at all times; 0 where it changes, or there is none."""
-        history = self.history
-        return history.rate_at(0.0) if history is not None and history.steady else 0.0
+        return self.first_rate if self.history and self.history.steady else 0.0
 
     @property
     def first_rate(self) -> float:
         """The shear rate at time 0."""
-        history = self.history
-        return 0.0 if history is None else history.rate_at(0.0)
+        return self.history.rate_at(0.0) if self.history else 0.0
 
     @property
     def largest_rate(self) -> float:
         """Largest size of the shear rate."""
-        history = self.history
-        return 0.0 if history is None else history.largest
+        return self.history.largest if self.history else 0.0
 
     @property
     def oscillation(self) -> OscillatingShear | None:

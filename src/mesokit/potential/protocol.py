@@ -1,4 +1,4 @@
-"""What a potential answers: its energy and its force, both from one place.
+"""Protocol of potentials: energy and force, both from one place.
 
 The first argument is the potential's NamedTuple of parameters; its class picks the implementation.
 """

@@ -1,6 +1,7 @@
 """Numbers by short names: `viscosity`, where only one of several begins so."""
 
 import difflib
+import itertools
 import re
 from collections.abc import Iterable
 from typing import Protocol, TypeVar
@@ -37,11 +38,9 @@ def keyed(comparisons: Iterable[T]) -> dict[str, T]:
     """
     found: dict[str, T] = {}
     for comparison in comparisons:
-        key = plain = key_of(comparison.what)
-        number = 1
-        while key in found:
-            number += 1
-            key = f"{plain}-{number}"
+        plain = key_of(comparison.what)
+        others = (f"{plain}-{number}" for number in itertools.count(2))
+        key = next(key for key in itertools.chain([plain], others) if key not in found)
         found[key] = comparison
     return found
 

@@ -138,20 +138,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     numbers, compiling, memory = derive(case, threads), compiling_memory(case), "estimate"
     if compiling > numbers.memory and not has_run(case):
         memory += f"; {size_text(compiling)} while it compiles, the first time"
-    rows = [
-        *_particle_rows(case, numbers),
-        *numbers.fluid_rows(),
-        *numbers.flow_rows(case.fluid.timestep),
-        ("run time", duration_text(numbers.seconds), f"estimate: {numbers.assumed}"),
-        ("memory", size_text(numbers.memory), memory),
-    ]
-    if numbers.trajectory:
-        rows.append(("trajectory", size_text(numbers.trajectory), "estimate"))
-    return Summary(tuple(rows), numbers.warnings, numbers.seconds, numbers.record(), numbers.memory)
-
-
-def _particle_rows(case: Case, numbers: Derived) -> list[Row]:
-    rows = [("particles", f"{numbers.particles:,}".replace(",", " "), "")]
+    rows: list[Row] = [("particles", f"{numbers.particles:,}".replace(",", " "), "")]
     if case.solutes is not None:
         rows.append(("beads of solutes", f"{case.solutes.beads:,}".replace(",", " "), ""))
     molecule = case.fluid.molecule
@@ -170,7 +157,15 @@ def _particle_rows(case: Case, numbers: Derived) -> list[Row]:
     if molecule is not None and case.solutes is not None:
         beads = case.solutes.number_of_substeps(case.box.dimension, case.fluid)
         rows.append(("sub-steps of solutes", str(beads), "verlet"))
-    return rows
+    rows += [
+        *numbers.fluid_rows(),
+        *numbers.flow_rows(case.fluid.timestep),
+        ("run time", duration_text(numbers.seconds), f"estimate: {numbers.assumed}"),
+        ("memory", size_text(numbers.memory), memory),
+    ]
+    if numbers.trajectory:
+        rows.append(("trajectory", size_text(numbers.trajectory), "estimate"))
+    return Summary(tuple(rows), numbers.warnings, numbers.seconds, numbers.record(), numbers.memory)
 
 
 def compiling_memory(case: Case) -> int:

@@ -14,9 +14,9 @@ from mesokit.case.units import MATCHES
 from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.geometry.walls import surfaces
+from mesokit.geometry.walls import room, surfaces
 from mesokit.method.mpcd.checks.solutes import solutes
-from mesokit.method.mpcd.checks.walls import moving_surfaces, room, walls
+from mesokit.method.mpcd.checks.walls import moving_surfaces, walls
 from mesokit.method.mpcd.collision.protocol import coefficients, collide, contribute, freedom
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.field.protocol import acceleration
@@ -318,7 +318,7 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     cells,
     vectors,
     walls,
-    room,
+    lambda case: room(case, "fluid"),
     moving_surfaces,
     size,
     check_mean_free_path,

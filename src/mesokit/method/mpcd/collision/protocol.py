@@ -1,6 +1,6 @@
-"""What a collision rule answers: a few questions, each for one particle or one cell.
+"""Protocol of collision rules: a few functions, each of one particle or one cell.
 
-`CollisionRule` is what a case holds: parameters, and what others ask of the rule. Over the
+`CollisionRule` is the part of a case: parameters, and properties of the rule. Over the
 particles of a cell the execution layer sums, for every rule, their number, mass, momentum m v and
 m v^2; a rule adds sums of its own. `r` is a position relative to the centre of the shifted cell.
 The first argument is the rule's NamedTuple of parameters; its class picks the implementation.
@@ -74,17 +74,13 @@ class CollisionRule(ABC):
 
     def transport(self, gas: Gas) -> theory.Transport | None:
         """Transport coefficients; None without a theory. May raise ValueError for odd numbers."""
-        known = self.in_theory()
-        if known is None or gas.thermostat is None:
-            return None
-        return theory.transport(**known, **gas._asdict())
+        known = self.in_theory() if gas.thermostat is not None else None
+        return None if known is None else theory.transport(**known, **gas._asdict())
 
     def shear_warming(self, gas: Gas) -> float | None:
         """Rise of the temperature of a held gas, over mass and squared shear rate."""
-        known = self.in_theory()
-        if known is None or gas.thermostat is None:
-            return None
-        return theory.shear_warming(**known, **gas._asdict())
+        known = self.in_theory() if gas.thermostat is not None else None
+        return None if known is None else theory.shear_warming(**known, **gas._asdict())
 
     def heat_at_walls(self, gas: Gas) -> theory.HeatAtWalls | None:
         """Conductivity of heat, and jump of the temperature at walls, of a gas that is not held."""

@@ -65,24 +65,18 @@ def heating(case: Case, across: int) -> Heating | None:
         rates = [np.gradient(flow.profile(y), y) for flow in flows if flow.profile is not None]
         squares = np.sum([rate**2 for rate in rates], axis=0) + np.zeros_like(y)
         heat = float(np.mean(fluid.density * fluid.mass * nu * squares))
-    heat += setting.mass_density(case) * nu * _changing_shear(case)
+    changing, history = 0.0, case.box.history  # mean square of the shear rate without a theory
+    if history is not None and not case.walls and setting.flow(case, 0).profile is None:
+        time = (case.run.warmup + case.run.steps) * float(fluid.timestep)
+        time = min(time, history.repeats_after or time)
+        shears = [history.rate_at((i + 0.5) * time / POINTS) for i in range(POINTS)]
+        changing = float(np.mean(np.square(shears)))
+    heat += setting.mass_density(case) * nu * changing
     moved = nu * (setting.surface_speed(case) / length) ** 2
     mean = max(heat / fluid.density, fluid.mass * moved)
     rise = temperature_rise(case)
     steady = None if rise is None else float(np.mean(rise)) / fluid.kT
     return Heating(2 / case.box.dimension * mean / fluid.kT, steady)
-
-
-def _changing_shear(case: Case) -> float:
-    """Mean square of the shear rate of a box where it changes in time, or where a force acts too;
-    0 where the flow has a theory, and between walls, which hold it back."""
-    history = case.box.history
-    if history is None or case.walls or setting.flow(case, 0).profile is not None:
-        return 0.0
-    time = (case.run.warmup + case.run.steps) * float(case.fluid.timestep)
-    time = min(time, history.repeats_after or time)
-    rates = [history.rate_at((i + 0.5) * time / POINTS) for i in range(POINTS)]
-    return float(np.mean(np.square(rates)))
 
 
 def temperature_rise(case: Case) -> Array | None:

@@ -1,4 +1,4 @@
-"""What a body force answers: the acceleration at a place.
+"""Protocol of body forces: the acceleration at a place.
 
 The first argument is the field's NamedTuple of parameters; its class picks the implementation. The
 streaming step takes the acceleration at the middle of the straight flight and keeps it for the

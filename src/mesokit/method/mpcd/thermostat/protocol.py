@@ -1,4 +1,4 @@
-"""What a thermostat answers: the kinetic energy that the particles of a cell should have.
+"""Protocol of thermostats: the kinetic energy that the particles of a cell should have.
 
 Energies are those of the motion that a collision rule leaves free: relative to the cell's centre of
 mass, and for the rules +a to its rotation too. The first argument is the thermostat's NamedTuple of
