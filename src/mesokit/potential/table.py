@@ -54,11 +54,7 @@ def rows_of(text: str, section: str | None = None) -> Floats:
     if section is not None and section not in sections:
         known = ", ".join(str(name) for name in sections if name is not None) or "none"
         raise ValueError(f"no section {section!r}; there are {known}")
-    return _checked(sections[next(iter(sections)) if section is None else section])
-
-
-def _checked(rows: list[tuple[int, list[float]]]) -> Floats:
-    """As an array. Raises ValueError for the first row that is wrong."""
+    rows = sections[next(iter(sections)) if section is None else section]
     width = len(rows[0][1])
     for (number, row), (_, before) in zip(rows, [(0, [0.0]), *rows], strict=False):
         start = f"line {number}:"

@@ -217,7 +217,21 @@ def method_of(case: Case) -> Method:
 
 def summary_of(case: Case, threads: int | None = None) -> Summary:
     """What follows from a case, by its method; of replicas how long all of them take."""
-    found = _of_all_replicas(case, threads)
+    summary, number, seed = method_of(case).summary, case.run.replicas, case.run.seed
+    if number == 1:
+        found = summary(case, threads)
+    else:
+        cores = usable_cores() if threads is None else threads
+        one = summary(case, max(1, cores // number))
+        seconds, all_rows = one.seconds * math.ceil(number / cores), []
+        for name, value, note in one.rows:
+            if name == "run time":
+                value, note = duration_text(seconds), f"estimate: of all, {cores} threads"
+            all_rows.append((name, value, "estimate: of each" if name == "memory" else note))
+        replicas = ("replicas", str(number), f"seeds {seed} to {seed + number - 1}, side by side")
+        numbers = {**one.numbers, "replicas": number}
+        memory = one.memory * number
+        found = Summary((replicas, *all_rows), one.warnings, seconds, numbers, memory)
     often = {one.label: one.every for one in case.observe if one.every < SELDOM}
     if not often:
         return found
@@ -228,21 +242,3 @@ def summary_of(case: Case, threads: int | None = None) -> Summary:
     more = f"; samples of {what}, up to {steps}, may add much to it"
     rows = [(*row[:2], row[2] + more if row[0] == "run time" else row[2]) for row in found.rows]
     return found._replace(rows=tuple(rows))
-
-
-def _of_all_replicas(case: Case, threads: int | None) -> Summary:
-    number = case.run.replicas
-    if number == 1:
-        return method_of(case).summary(case, threads)
-    cores = usable_cores() if threads is None else threads
-    one = method_of(case).summary(case, max(1, cores // number))
-    seconds = one.seconds * math.ceil(number / cores)
-    last = case.run.seed + number - 1
-    rows = [("replicas", str(number), f"seeds {case.run.seed} to {last}, side by side")]
-    for name, value, note in one.rows:
-        if name == "run time":
-            rows.append((name, duration_text(seconds), f"estimate: of all, {cores} threads"))
-        else:
-            rows.append((name, value, "estimate: of each" if name == "memory" else note))
-    numbers = {**one.numbers, "replicas": number}
-    return Summary(tuple(rows), one.warnings, seconds, numbers, one.memory * number)

@@ -41,12 +41,23 @@ def drawn(
     as `octant` has them. Molecules that reach into a solid or have beads that repel one another
     strongly are drawn again. Raises RunError if that is in vain.
     """
-    d, number = len(box), len(random.ids)
-    places = np.empty((number, molecule.length, d))
-    left = np.arange(number)
+    d, ring = len(box), molecule.topology == "ring"
+    places = np.empty((len(random.ids), molecule.length, d))
+    left = np.arange(len(places))
     for _ in range(TRIES):
-        places[left] = _one_draw(molecule, kT, box, random)
-        good = in_fluid(places[left]).all(axis=1) & _relaxed(molecule, places[left], kT)
+        new = np.empty((len(left), molecule.length, d))
+        new[:, 0] = random.units(d) * box
+        bonds = np.stack([first_bonds(molecule, kT, d, random) for _ in molecule.bonds])
+        if ring:
+            bonds -= bonds.mean(axis=0)  # the last one leads back; Gaussian bonds stay Gaussian
+        came: dict[int, int] = {}  # bond by which each bead was reached
+        for n, (a, b) in enumerate(molecule.bonds[:-1] if ring else molecule.bonds):
+            if molecule.bending is not None and a in came and not ring:
+                bonds[n] = turned(molecule, bonds[came[a]], bonds[n], kT, random)
+            new[:, b] = new[:, a] + bonds[n]
+            came[b] = n
+        good = in_fluid(new).all(axis=1) & _relaxed(molecule, new, kT)
+        places[left] = new
         left, random = left[~good], random.of(~good)
         if len(left) == 0:
             return places.reshape(-1, d)
@@ -54,24 +65,6 @@ def drawn(
         f"fluid.molecule: no place for {len(left)} of {len(places)} molecules; they are too large "
         "for the room between the solids, or their beads too large for one another"
     )
-
-
-def _one_draw(molecule: Molecule, kT: float, box: Floats, random: Draws) -> Floats:
-    d = len(box)
-    places = np.empty((len(random.ids), molecule.length, d))
-    places[:, 0] = random.units(d) * box
-    ring = molecule.topology == "ring"
-    links = molecule.bonds[:-1] if ring else molecule.bonds
-    bonds = np.stack([first_bonds(molecule, kT, d, random) for _ in molecule.bonds])
-    if ring:
-        bonds -= bonds.mean(axis=0)  # the last one leads back; Gaussian bonds stay Gaussian
-    came: dict[int, int] = {}  # bond by which each bead was reached
-    for n, (a, b) in enumerate(links):
-        if molecule.bending is not None and a in came and not ring:
-            bonds[n] = turned(molecule, bonds[came[a]], bonds[n], kT, random)
-        places[:, b] = places[:, a] + bonds[n]
-        came[b] = n
-    return places
 
 
 def first_bonds(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:

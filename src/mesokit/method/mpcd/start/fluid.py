@@ -21,7 +21,6 @@ from mesokit.method.mpcd.start.arrays import OfFirst, rows_of
 from mesokit.method.mpcd.start.conformation import connected, drawn, nearest_of
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.start.growth import grown
-from mesokit.potential.protocol import Pair
 from mesokit.potential.thermal import energies
 from mesokit.scalar.fixed_point import added_halves, halves
 from mesokit.scalar.random import FIRST_BEAD, INITIAL_POSITION, INITIAL_VELOCITY
@@ -69,10 +68,23 @@ def out_of_beads(numbers: Numbers, ids: Ids, places: Floats, beads: Floats) -> F
     solutes = numbers.case.solutes
     if solutes is None or solutes.solvent_pair is None or not len(places):
         return places
-    random = Draws(numbers.case.run.seed, INITIAL_POSITION, ids, FIRST_AGAIN)
+    from scipy.spatial import cKDTree
+
+    pair, period = solutes.solvent_pair, periods(numbers)
+    boxes = np.where(np.isfinite(period), period, 0.0)
+
+    def tree(x: Floats) -> cKDTree:
+        inside = np.where(boxes > 0.0, x % np.where(boxes > 0.0, boxes, 1.0), x)
+        return cKDTree(inside, boxsize=boxes)
+
+    random, around = Draws(numbers.case.run.seed, INITIAL_POSITION, ids, FIRST_AGAIN), tree(beads)
     left, kT = np.arange(len(places)), numbers.case.fluid.kT
     for _ in range(TRIES):
-        energy = _energy(numbers, places[left], beads, solutes.solvent_pair)
+        # the energy of each place, by all beads near it, in the same order among any others
+        near = around.sparse_distance_matrix(tree(places[left]), pair.reach, output_type="ndarray")
+        near = near[np.lexsort((near["i"], near["j"]))]
+        energy = np.zeros(len(left))
+        np.add.at(energy, near["j"], energies((pair.kernel(),), near["v"]))
         repelled = random.units(1)[:, 0] >= np.exp(-np.clip(energy / kT, 0.0, None))
         if numbers.solids is not None and numbers.slit is None:
             repelled |= numbers.solids.distance(places[left]) < MARGIN
@@ -81,23 +93,6 @@ def out_of_beads(numbers: Numbers, ids: Ids, places: Floats, beads: Floats) -> F
         left, random = left[repelled], random.of(repelled)
         places[left] = random.units(numbers.dimension) * numbers.box
     raise RunError("solutes.solvent_pair: the beads leave no room to the fluid; expected fewer")
-
-
-def _energy(numbers: Numbers, places: Floats, beads: Floats, pair: Pair) -> Floats:
-    """Of each place, by all beads near it."""
-    from scipy.spatial import cKDTree
-
-    period = periods(numbers)
-    boxes = np.where(np.isfinite(period), period, 0.0)
-    inside = [
-        np.where(boxes > 0.0, x % np.where(boxes > 0.0, boxes, 1.0), x) for x in (places, beads)
-    ]
-    trees = [cKDTree(x, boxsize=boxes) for x in inside]
-    near = trees[1].sparse_distance_matrix(trees[0], pair.reach, output_type="ndarray")
-    near = near[np.lexsort((near["i"], near["j"]))]  # the same order among any others
-    total = np.zeros(len(places))
-    np.add.at(total, near["j"], energies((pair.kernel(),), near["v"]))
-    return total
 
 
 def first_beads(
