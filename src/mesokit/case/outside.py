@@ -1,4 +1,4 @@
-"""Parts of a case that mesokit does not bring: which they are, and whether they are here."""
+"""Parts of a case that are not of mesokit: their records, and a check that they are here."""
 
 import contextlib
 import dataclasses
@@ -14,7 +14,7 @@ from mesokit.errors import MesokitError, RunError
 
 
 def outside_parts(case: Any) -> list[dict[str, str]]:
-    """What a record says of each: family, name, class, and the distribution with its version.
+    """Record of each such part: family, name, class, and the distribution with its version.
 
     A part that a script defines has no distribution.
     """
@@ -34,7 +34,7 @@ def is_outside(part: Any) -> bool:
 
 @contextlib.contextmanager
 def blaming(case: Any) -> Iterator[None]:
-    """What goes wrong inside is a RunError that names the parts from outside, if there are any."""
+    """Errors inside become a RunError that names the parts from outside, if there are any."""
     try:
         yield
     except (MesokitError, OSError, MemoryError):

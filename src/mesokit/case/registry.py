@@ -256,7 +256,6 @@ def parts_in(package: str, **lists: type[Any]) -> Callable[[str], tuple[type[Any
 
 @functools.cache
 def _modules(package: str) -> frozenset[str]:
-    """The names of the files and folders in a package."""
     path = importlib.import_module(package).__path__
     return frozenset(module.name for module in pkgutil.iter_modules(path))
 

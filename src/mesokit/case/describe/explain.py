@@ -1,4 +1,4 @@
-"""What a key of a case file means: `mesokit explain`."""
+"""Explanations of the keys of a case file: `mesokit explain`."""
 
 import difflib
 import re

@@ -16,7 +16,7 @@ from mesokit.potential.thermal import mean_square, stiffness
 from mesokit.scalar.pointer import address
 
 PHASE = 0.15  # of the fastest oscillation in a sub-step: springs read (PHASE/2)^2 = 0.6 % too long
-COARSE = 0.7  # beyond this phase they read 12 % too long, and a case is warned about
+COARSE = 0.7  # beyond this phase they read 12 % too long, which is a warning
 UNSTABLE = 2.0  # from this phase on velocity Verlet blows up
 
 MOST_SUBSTEPS = 100_000

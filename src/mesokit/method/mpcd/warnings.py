@@ -270,7 +270,6 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
 
 
 def _net_pull(case: Case) -> Iterator[str]:
-    """Forces on solutes that nothing balances."""
     solutes = case.solutes
     if solutes is None or case.walls or solutes.traps or solutes.solvent == "random":
         return

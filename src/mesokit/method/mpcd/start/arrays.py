@@ -1,4 +1,4 @@
-"""Arrays to start from: given, or read from the files that a case names, and checked."""
+"""Arrays to start from: given, or read from files of the case, and checked."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def read_by_first(here: World, read: Callable[[], tuple[Any, ...]]) -> tuple[Any
 
 
 def rows_of(array: Any) -> Any:
-    """The rows that are here, which is nothing where another rank has them."""
+    """The rows that are here; None if another rank has them."""
     return array.rows if isinstance(array, OfFirst) else array
 
 
@@ -138,7 +138,6 @@ def read_arrays(
 
 
 def _shape(case: Case, owner: str) -> tuple[int, int]:
-    """One row for each of the particles or beads."""
     beads = case.solutes.beads if owner == "solutes" and case.solutes else case.particles
     return beads, case.box.dimension
 

@@ -127,8 +127,11 @@ def _grow(
     for a, b in links:  # from a bead to the next one in order
         bonds = pool[(random.units(AT_ONCE)[0] * len(pool)).astype(int)]
         if molecule and molecule.bending is not None:
-            if a in came:
-                bonds = _reflected(bonds, came[a])
+            if a in came:  # in the mirror that takes the x axis to the bond before
+                mirror = np.eye(len(first))[0] - came[a] / np.linalg.norm(came[a])
+                square = float(mirror @ mirror)
+                if square >= 1e-20:
+                    bonds = bonds - np.outer(bonds @ mirror, 2.0 / square * mirror)
             else:
                 bonds = bonds @ _any_turn(len(first), random)
         ends = there.places[start + a] + bonds
@@ -138,15 +141,6 @@ def _grow(
         came[b] = bonds[good]
         there.add(ends[good])
     return True
-
-
-def _reflected(vectors: Floats, along: Floats) -> Floats:
-    """The vectors in the mirror that takes the x axis to a direction."""
-    mirror = np.eye(len(along))[0] - along / np.linalg.norm(along)
-    square = float(mirror @ mirror)
-    if square < 1e-20:
-        return vectors
-    return vectors - np.outer(vectors @ mirror, 2.0 / square * mirror)
 
 
 def _any_turn(d: int, random: Draws) -> Floats:
