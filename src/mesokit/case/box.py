@@ -20,7 +20,7 @@ from mesokit.scalar.jit import generic, scalar
 Axis = Literal["x", "y", "z"]
 AXES: tuple[Axis, ...] = ("x", "y", "z")
 if TYPE_CHECKING:
-    Length = int  # where a method has cells: the case then asks for whole numbers
+    Length = int  # where a method has cells: the case is checked for whole numbers
 else:
     Length = float
 
@@ -102,7 +102,7 @@ class Box:
 
     @property
     def history(self) -> ShearHistory | None:
-        """How the shear rate changes in time, whichever keys say so; None without shear.
+        """History of the shear rate, whichever keys define it; None without shear.
 
         >>> Box([8, 8], shear_rate=0.1).history
         SteadyShear(rule='steady', rate=0.1)
@@ -115,12 +115,12 @@ class Box:
 
     @property
     def sheared(self) -> bool:
-        """Whether images ever move."""
+        """True if images ever move."""
         return bool(self.shear_rate or (self.shear is not None and self.shear.largest))
 
     @property
     def shear_key(self) -> str:
-        """The key that says how it is sheared, and its value, as messages name it.
+        """The key of the shear and its value, as messages name it.
 
         >>> Box([8, 8], shear_rate=0.1).shear_key
         'box.shear_rate = 0.1'

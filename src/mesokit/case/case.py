@@ -60,14 +60,14 @@ class Case(Shown):
     log: Log | None
     units: Units | None
     title: str
-    _method: ClassVar[Any]  # typed in `mesokit.seam.method`, which knows cases
+    _method: ClassVar[Any]  # typed in `mesokit.seam.method`, which imports cases
     if TYPE_CHECKING:
         __dataclass_fields__: ClassVar[dict[str, Any]]
 
         def __getattr__(self, section: str) -> Any: ...
 
     def __new__(cls, *given: Any, **sections: Any) -> Case:
-        """A case of the class that `run.method` asks for."""
+        """A case of the class of `run.method`."""
         if cls is Case:
             run = given[0] if given else sections.get("run")
             cls = case_class(method_named(run))
@@ -108,7 +108,7 @@ class Case(Shown):
         return groups
 
     def particles_have(self, what: str) -> bool:
-        """Whether an engine tells something, such as "diameter", of each particle (`Group.has`)."""
+        """True if some group has a quantity such as "diameter" (`Group.has`)."""
         return any(what in group.has for group in self.groups)
 
     @property

@@ -8,7 +8,7 @@ import importlib
 import pathlib
 from typing import Any
 
-METHODS = {  # what `run.method` says: the module that holds the METHOD
+METHODS = {  # value of `run.method`: the module that holds the METHOD
     "mpcd": "mesokit.method.mpcd.method",
     "brownian": "mesokit.method.brownian.method",
     "flock": "mesokit.method.flock.method",

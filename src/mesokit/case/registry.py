@@ -31,7 +31,7 @@ class Family:
     """All parts of one sort, by the value of their tag.
 
     `title` is what messages call one of them, `tag` the key that names it in a case file, `group`
-    that of the entry points by which packages bring more; `functions` says what is to be done with
+    that of the entry points by which packages bring more; `functions` is a hint of what to do with
     a function.
     """
 
@@ -63,7 +63,7 @@ class Family:
         self.known[name] = part
 
     def names(self) -> list[str]:
-        """The names that a case file can say, those that packages bring included."""
+        """Names for case files, those of parts of installed packages included."""
         brought = [e.name for e in self._entries() if self._may_have(e)]
         return list(dict.fromkeys([*self.parts, *brought]))
 
@@ -73,7 +73,7 @@ class Family:
             self._import(name)
         if name not in self.known and name not in self.parts:
             self._load(name)
-        if name not in self.known:  # a part of another method: the case is told which ones it has
+        if name not in self.known:  # a part of another method: its check names those of the case
             for method in METHODS.values():
                 importlib.import_module(method)
             self._import(name)
@@ -132,7 +132,7 @@ class Family:
             )
 
     def _may_have(self, entry: metadata.EntryPoint) -> bool:
-        """Whether no family of the same group is known to have the part."""
+        """True if no family of the same group has the part."""
         others = [f for f in FAMILIES.values() if f.group == self.group]
         return not any(entry.name in family.parts for family in others)
 
@@ -261,5 +261,5 @@ def _modules(package: str) -> frozenset[str]:
 
 
 def address(part: type) -> str:
-    """Module and name of a class, as an entry point says it."""
+    """Module and name of a class, as in an entry point."""
     return f"{part.__module__}:{part.__qualname__}"

@@ -99,7 +99,7 @@ def _step(here: Any, part: str, path: str) -> Any:
 
 
 def _which(path: str, items: list[Any]) -> CaseError:
-    """The last part of the path should have said which item of a list is meant."""
+    """The error of a path whose last part does not choose an item of a list."""
     start, _, last = path.rpartition(".")
     example = f"{start}.1" if last.isdecimal() else f"{start}.1.{last}"
     known = f"a number from 1 to {len(items)}" if len(items) != 1 else "the number 1"

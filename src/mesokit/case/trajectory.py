@@ -29,7 +29,7 @@ class Kind(NamedTuple):
 class Group(NamedTuple):
     """Particles with consecutive numbers, such as a fluid or its solutes, kind after kind.
 
-    `has` is what an engine tells of each: quantities that trajectories may hold; "mass" and
+    `has` are quantities of each in an engine: those that trajectories may hold; "mass" and
     "diameter" where each has its own; "heading" where the direction of a velocity at one time is
     what pictures show. Sites of a lattice are a group that has "site", the number of the state of
     each: `lattice` is how many there are along each axis, numbered along the last one first, and

@@ -1,4 +1,4 @@
-"""The Lennard-Jones potential, cut off where it is told to be."""
+"""The Lennard-Jones potential with a cut-off."""
 
 from __future__ import annotations
 

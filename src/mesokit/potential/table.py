@@ -86,7 +86,7 @@ def rows_of(text: str, section: str | None = None) -> Floats:
 
 Floats = NDArray[np.float64]
 INTERVALS = 4096  # in the square of the distance, of the table that compiled code reads
-TABLES: dict[str, Floats] = {}  # such tables, for good: kernels know them by address
+TABLES: dict[str, Floats] = {}  # such tables, for good: kernels have their addresses
 
 
 @component
@@ -228,7 +228,7 @@ class Cubics(NamedTuple):
 
 @scalar
 def number(table, index):
-    """A number of a table; compiled, so that it may be asked from plain Python too."""
+    """A number of a table; compiled, so that plain Python can call it too."""
     return real(table, index)
 
 

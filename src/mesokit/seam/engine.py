@@ -124,7 +124,7 @@ class RunningFluid(Particles, Protocol):
     `bond_vectors` (bonds, d) lead from the first to the second particle of each bond, in molecules
     of the fluid and then in solutes.
     `whole_positions` are those of whole molecules, each bead next to its first, whatever images
-    they lie in: under shear `unwrapped` positions do not know how far images have slid.
+    they lie in: under shear `unwrapped` positions leave out how far images have slid.
     `stress` holds "kinetic", "collisional" and, of molecules, "bond" (d, d) of the last step if an
     observer due at it declares `measures = ("stress",)`. `wall_impulse` (surfaces, d + 1 or d + 3)
     is the momentum and angular momentum given to the lower and the upper plate of a slit, or to

@@ -134,7 +134,7 @@ def fit(estimate: Estimate, basis: Array, weight: Array) -> Estimate:
 
 
 def noted(value: float, *notes: str) -> str:
-    """The notes of a number as one, the first of which says why a quotient has no value.
+    """The notes of a number as one, the first of which is the reason if a quotient has no value.
 
     >>> noted(0.7, "", "steady"), noted(np.nan, "steady")
     ('steady', 'its divisor is within two standard errors of zero; steady')

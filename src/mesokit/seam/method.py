@@ -53,8 +53,7 @@ class Summary(NamedTuple):
 
 
 class Columns(NamedTuple, Generic[E]):
-    """What a log may tell of the particles: all names, those that are usual, and how to find some
-    of them in an engine."""
+    """Columns of a log: all names, those that are usual, and how to read some in an engine."""
 
     names: tuple[str, ...]
     usual: tuple[str, ...]
@@ -68,8 +67,8 @@ NO_COLUMNS: Columns[object] = Columns((), (), lambda engine, wanted: {})
 class BuildUp(NamedTuple):
     """How a flow from rest comes to its steady state: what it lacks falls as an exponential.
 
-    steps: in which that falls to 1/e; need: that `mesokit check` asks to wait for before the first
-    sample; had: that the run waited.
+    steps: in which that falls to 1/e; need: the wait before the first sample that `mesokit check`
+    recommends; had: that the run waited.
     """
 
     steps: float
@@ -137,17 +136,16 @@ class Method:
     Parameters
     ----------
     name : str
-        What `run.method` says.
+        The value of `run.method`.
     sections : class
         Its annotated fields, made by `param`, are the sections of its cases.
     observables : sequence of type
-        The observables that it offers, or bases of them. Others may say in `methods` that they
-        are for it.
+        The observables that it offers, or bases of them. Others may name it in `methods`.
     check : function of a case
         Raises CaseError for values that are fine alone and have no physics together.
     groups : function of a case
-        The groups of its particles or sites, in the order of their numbers, and what an engine
-        tells of each (`mesokit.case.trajectory.Group`).
+        The groups of its particles or sites, in the order of their numbers, and the quantities of
+        each (`mesokit.case.trajectory.Group`).
     timestep : function of a case
         The time that a step takes.
     summary : function of a case and a number of threads (None: all cores)
@@ -171,7 +169,7 @@ class Method:
     keep_files : function of a case and the folder of its run, optional
         The case, with copies in that folder of the files that it was made from.
     log : function of a case, optional
-        What the log of its run may tell.
+        The columns of the log of its run.
     si : function of a case, optional
         What its units are in SI; without it, a case must not have the section `[units]`.
     build_up : function of a case, optional
@@ -183,7 +181,7 @@ class Method:
         What lengths, times and masses are counted in; unless said, the unit of the case.
     check_ranks : function of a case and a number of ranks, optional
         Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
-        can. Its engine is then asked by all ranks at once.
+        can. All ranks then call its engine at once.
     """
 
     name: str

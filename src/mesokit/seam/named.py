@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 
 
 class Named(Protocol):
-    """What says in words what it is."""
+    """Something with a name in words."""
 
     @property
     def what(self) -> str:
@@ -49,7 +49,7 @@ def find(comparisons: Iterable[T], name: str) -> T:
     """The comparison of that name, or the only one whose name begins with it.
 
     The name may be the words or the key of `keyed`; large letters and signs between the words do
-    not matter. Raises KeyError, which says what is there and near.
+    not matter. Raises KeyError with the names that are there or near.
 
     >>> from mesokit.seam.result import Comparison
     >>> measured = [Comparison("viscosity from curvature", 0.9, 0.1), Comparison("slip", 0, 1)]

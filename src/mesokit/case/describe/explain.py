@@ -74,7 +74,7 @@ def explain(path: str = "") -> list[Explanation]:
         if not found:
             raise _unknown(path, word, places[0], definitions)
         places = found
-    paths: dict[tuple[Any, ...], list[str]] = {}  # what is the same in several parts is said once
+    paths: dict[tuple[Any, ...], list[str]] = {}  # the same meaning in several parts is listed once
     for place in places:
         where, *said = _explained(place, definitions)
         paths.setdefault((said[0], tuple(said[1])), []).append(where)

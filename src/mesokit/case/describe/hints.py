@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 T = TypeVar("T")
 A = TypeVar("A")
 
-# Fields that are given as lists, tuples or arrays, and are tuples ever after. A type checker sees
-# what may be set to any iterable and is a tuple when it is read, which no plain hint says.
+# Fields that are given as lists, tuples or arrays, and are tuples ever after. For type
+# checkers they may be set to any iterable and are read as tuples, which no plain hint expresses.
 if TYPE_CHECKING:
 
     class Many(Generic[T]):

@@ -1,4 +1,4 @@
-"""JSON schema of components as pydantic knows them, made plain for the editors of case files.
+"""JSON schema of components from pydantic, made plain for the editors of case files.
 
 Draft 7, which editors of TOML understand: nothing beside a `$ref`, no `null` (TOML has none), units
 at the end of descriptions, and tags required wherever they tell parts apart.
@@ -105,7 +105,7 @@ def _plain(node: Schema) -> Schema:
 
 
 def _settle_default(made: Schema) -> None:
-    """Leave out a default that says nothing: a table of defaults, or what stands for one that is
+    """Leave out a default without a meaning: a table of defaults, or what stands for one that is
     found later."""
     default = made.pop("default", None)
     default = made.pop("unless_said", default)

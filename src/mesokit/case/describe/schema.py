@@ -18,7 +18,7 @@ def schema() -> dict[str, Any]:
 
     It covers all methods and the parts that installed packages bring. Editors complete and check
     case files by it: Taplo and Even Better TOML where the first line is
-    `#:schema ./case.schema.json`. What it lets pass may still be refused: it knows no physics.
+    `#:schema ./case.schema.json`. Cases that it accepts may still be refused: it has no physics.
 
     Raises:
         CaseError: a method or a part that a package brings cannot be loaded.
@@ -47,7 +47,7 @@ def schema() -> dict[str, Any]:
         sections[name] = {keys.get(key, key): inner for key, inner in each["properties"].items()}
     together: dict[str, Any] = {}
     whose: dict[str, str] = {}
-    for name, each in reversed(sections.items()):  # the usual method says what shared keys mean
+    for name, each in reversed(sections.items()):  # the usual method describes shared keys
         for key, inner in each.items():
             if key not in together or key in sections[methods.DEFAULT]:
                 together[key], whose[key] = inner, name
@@ -71,7 +71,7 @@ def schema() -> dict[str, Any]:
 def _any_of_both(
     key: str, both: dict[str, dict[str, Any]], definitions: dict[str, Any]
 ) -> dict[str, Any]:
-    """A section of two methods, each of which says below which of the keys are its own."""
+    """A section of two methods; keys of one of them alone are named in its rule below."""
     tables = {
         name: definitions[each["allOf"][0]["$ref"].removeprefix(PLACE)]
         for name, each in both.items()

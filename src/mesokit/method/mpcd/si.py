@@ -99,7 +99,7 @@ class SI:
         return self.pressure * self.time
 
     def __getitem__(self, name: str) -> Number:
-        """The dimensionless number of that name; KeyError says which there are."""
+        """The dimensionless number of that name; KeyError names those that there are."""
         known = {number.name: number for number in self.numbers}
         if name not in known:
             raise KeyError(f"no number {name!r}; there are {', '.join(known)}")
@@ -135,7 +135,7 @@ class SI:
 
 
 def convert(case: Case) -> SI:
-    """What a case is in SI units, as its section `units` says.
+    """A case in SI units, by its section `units`.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def solutes(case: Case) -> Iterator[str]:
 
 
 def _sizes(case: Case, given: Solutes) -> Iterator[str]:
-    """No bead that sees two images of another, no bond that could lead to either of two."""
+    """No bead that interacts with two images of another, no bond that could lead to either."""
     closed = closed_axes(case.walls)
     lengths = dict(zip(case.box.axes, case.box.size, strict=True))
     shortest = min((n for axis, n in lengths.items() if axis not in closed), default=math.inf)

@@ -38,7 +38,7 @@ class CollisionRule(ABC):
 
     acts: ClassVar[bool] = True  # False: particles never meet
     conserves: ClassVar[tuple[str, ...]] = ()  # "mass", "momentum", "energy", "angular momentum"
-    needs_energy: ClassVar[bool] = False  # whether `coefficients` asks for the sum of m v^2
+    needs_energy: ClassVar[bool] = False  # whether `coefficients` needs the sum of m v^2
     isothermal: ClassVar[bool] = False  # whether it holds the temperature itself
     one_temperature: ClassVar[bool] = True  # of all kinds of particles in a mixture
     # which of its own sums `coefficients` is to have the gradient of, over neighbouring cells
@@ -58,7 +58,7 @@ class CollisionRule(ABC):
 
     @abstractmethod
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
-        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
+        """Number of results of `coefficients`; `stretched`: a thermostat acts."""
 
     def among(self, kernel: Any, counts: tuple[int, ...], mass: float) -> Any:
         """The kernel for so many particles of each species, numbered in turn; mean mass."""
@@ -69,7 +69,7 @@ class CollisionRule(ABC):
         yield from ()
 
     def in_theory(self) -> dict[str, Any] | None:
-        """The name and angle by which `mesokit.theory` knows it; None if it does not."""
+        """Its name and angle in `mesokit.theory`; None without a theory."""
         return None
 
     def transport(self, gas: Gas) -> theory.Transport | None:
@@ -106,8 +106,8 @@ class CollisionRule(ABC):
 class Cell(NamedTuple):
     """What the particles of a cell add up to.
 
-    Their number, mass and momentum, `energy` the sum of m v^2, `sums` what a rule asked for: its
-    own sums, and after them the gradient of the one that `gradient_of` says, per cell of length.
+    Their number, mass and momentum, `energy` the sum of m v^2, `sums` those of the rule: its
+    own sums, and after them the gradient of the one with number `gradient_of`, per cell of length.
     """
 
     number: float

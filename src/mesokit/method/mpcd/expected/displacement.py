@@ -193,7 +193,7 @@ class Displacement:
         return float(times.mode[0])
 
     def coefficient(self) -> tuple[float, str]:
-        """The diffusion coefficient of theory, nan if there is none, and what to say of it."""
+        """The diffusion coefficient of theory, nan if there is none, and a note on it."""
         nothing, alone = float("nan"), self.alone()
         note = setting.chaos(self.case, setting.STIRRED)
         solutes, molecule = self.case.solutes, self.molecule

@@ -1,4 +1,4 @@
-"""What friction makes of the temperature of a fluid that no thermostat holds."""
+"""Temperature of a fluid without a thermostat under friction."""
 
 import math
 from typing import Any, NamedTuple
@@ -148,10 +148,10 @@ def _local(case: Case, kT: Array) -> _Local | None:
 
 
 def _work(case: Case, across: int, sticky: list[bool], here: _Local) -> Array:
-    """What friction heats, per volume and time: stress squared over viscosity.
+    """Heat of friction per volume and time: stress squared over viscosity.
 
     The stress falls from plate to plate by the force on the fluid between; a slip plate takes
-    none, and of two that hold the fluid the velocities say how much each takes.
+    none, and of two that hold the fluid the velocities give how much each takes.
     """
     plates = slit_of(case)
     assert plates is not None

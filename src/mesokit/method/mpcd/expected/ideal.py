@@ -1,4 +1,4 @@
-"""What ideal molecules are at rest, and how beads drift and spread where nothing is in the way."""
+"""Theory of ideal molecules at rest, and of beads that drift and spread freely."""
 
 import dataclasses
 import math
@@ -79,7 +79,7 @@ def stretched(case: Case, molecule: Molecule) -> float:
 
 
 class Drift(NamedTuple):
-    """Velocity (d,) and diffusion coefficient of centres of mass, and what to say of them.
+    """Velocity (d,) and diffusion coefficient of centres of mass, and a note on them.
 
     A velocity is remembered for the time `memory`, beyond that of one flight.
     """
@@ -116,8 +116,7 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
 
 def flow_axis(case: Case) -> int:
     """Number of the axis along which a force drives the fluid, x unless there is one."""
-    axis = setting.driven_axis(case)
-    return 0 if axis is None else axis
+    return setting.driven_axis(case) or 0
 
 
 def flow_sign(case: Case, axis: int) -> int:

@@ -142,7 +142,7 @@ def stirring_diffusion(case: Case, boxed: bool = False) -> float | None:
 
 def self_diffusion(case: Case) -> tuple[float, str]:
     """Diffusion coefficient of a particle of a simple fluid in this box, nan without a theory, and
-    what to say of it: with the flow that it stirs up, or between walls molecular chaos."""
+    a note: with the flow that it stirs up, or between walls molecular chaos."""
     quiet = not case.walls and setting.mean_free_path(case) < 1
     stirring = stirring_diffusion(case, boxed=True) if quiet else None
     if stirring is not None:
@@ -294,7 +294,7 @@ def kirkwood(case: Case, kind: int | str) -> float | None:
 
 
 def mode_times_of(case: Case, kind: int | str = 1) -> tuple[theory.RouseTimes | None, str]:
-    """Relaxation times of molecules at rest, and whose theory says so: Rouse or Zimm."""
+    """Relaxation times of molecules at rest, and a note with the theory, Rouse or Zimm."""
     if case.solutes is None or case.solutes.solvent == "random" or of_fluid(case, kind):
         return rouse_times_of(case, kind), rouse_note(case)
     note = "approximate: Zimm; hydrodynamics pre-averaged, large box"

@@ -1,4 +1,4 @@
-"""What theory says of the neighbours of particles, beads and molecules."""
+"""Theory of the neighbours of particles, beads and molecules."""
 
 import math
 from typing import Any

@@ -75,7 +75,7 @@ STIRRING = "molecular chaos and hydrodynamic backflow, in this box"
 
 
 def chaos(case: Case, off: str) -> str:
-    """The note of a number that molecular chaos gives: `off` says how far off where particles
+    """The note of a number that molecular chaos gives: `off` is its error where particles
     meet again before they have flown a cell."""
     approximate = mean_free_path(case) < 1
     return caveat(case) or f"approximate: molecular chaos; {off}" * approximate or "molecular chaos"
@@ -133,7 +133,7 @@ def offset(case: Case) -> float:
 
 
 def temperature_note(case: Case) -> str:
-    """How far a thermostat is known to miss kT, "" below 0.1 %."""
+    """Note on the known deviation of a thermostat from kT, "" below 0.1 %."""
     if case.fluid.mixed:
         parts = (case.fluid.thermostat, case.fluid.collision)
         name = next((name_of(part) for part in parts if not part.one_temperature), "")

@@ -64,7 +64,7 @@ class Velocities:
         return "Maxwell"
 
     def note(self, classes: int) -> str:
-        """What to say of it."""
+        """Note on the theory."""
         if self.driven:
             return "approximate: Maxwell about a mean flow"
         return setting.temperature_note(self.case) or f"Maxwell, {classes} classes"

@@ -1,4 +1,4 @@
-"""What molecular chaos and hydrodynamics say of how long particles remember their velocity."""
+"""Velocity autocorrelation by molecular chaos and hydrodynamics."""
 
 from typing import Any
 
@@ -62,15 +62,14 @@ class VelocityMemory:
         return setting.with_start(self.case, error, value, runs)
 
     def share(self, every: int) -> str | None:
-        """What to say of the share that is left after a lag; None if it is not told."""
+        """Note on the share that is left after a lag; None without a theory."""
         if self.coefficients is None:
             return None
         # particles of a fluid at rest have not met before their first collision: it is exact
         return "" if every == 1 else setting.chaos(self.case, "memory lasts longer")
 
     def diffusion(self, every: int) -> tuple[float, str] | None:
-        """The diffusion coefficient that the integral is, and what to say of it; None if it is
-        not told."""
+        """The diffusion coefficient that is the integral, and its note; None without a theory."""
         if self.coefficients is None or every > 1:  # else the sum over steps is not known
             return None
         return self_diffusion(self.case)

@@ -85,7 +85,7 @@ class Force(ABC):
         yield from ()
 
     def notes(self, size: tuple[int, ...]) -> Iterator[str]:
-        """What one should know of it in a box of this size, key first."""
+        """Remarks on it in a box of this size, key first."""
         yield from ()
 
     def steady_flow(self, component: int, size: tuple[int, ...], viscosity: float | None) -> Driven:

@@ -106,7 +106,7 @@ class FreeMolecule(Molecule):
         return tuple((before[bead], bead) for bead in range(1, self.length))
 
     def mean_square_bond(self, dimension: int, kT: float) -> float | None:
-        """Mean over its bonds of the square length; with loops only of springs that know no others:
+        """Mean over its bonds of the square length; with loops only of springs that feel no others:
         n - 1 vectors share the energy of all bonds."""
         square = super().mean_square_bond(dimension, kT)
         if square is None or self.loops == 0:

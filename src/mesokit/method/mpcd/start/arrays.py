@@ -64,10 +64,10 @@ def read_arrays(
 ) -> tuple[Any, Any]:
     """The arrays to start from: those given, or those that the case names; None where none.
 
-    Rows of a .npy file without a scale or of an earlier run are read where they are asked for. Of
-    several ranks (`here`) each looks at its share of what all have, and all hear what is wrong.
+    Rows of a .npy file without a scale or of an earlier run are read where they are needed. Of
+    several ranks (`here`) each checks its share of what all have, and all raise the same error.
     Other files rank 0 reads alone (`OfFirst`), but for those of solutes, whose beads all ranks
-    know.
+    have.
 
     `owner` is "fluid" or "solutes". `states` gives for each key that names a whole state (`run`,
     `file`) what reads positions and velocities that suit the case. Raises CaseError if an array is

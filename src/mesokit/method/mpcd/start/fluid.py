@@ -136,8 +136,8 @@ def start(
     Parameters
     ----------
     engine : Engine
-        A fluid in memory; its case says how to draw what is not given, its `parts` which particles
-        are to be made here.
+        A fluid in memory; its case defines how to draw what is not given, its `parts` which
+        particles are to be made here.
     positions, velocities : array (n, d) or rows of a file, optional
         In cells, and in cells per unit of time, by particle number, as `read_arrays` has checked
         them. Where rank 0 alone has some, it makes all particles, a piece at a time.

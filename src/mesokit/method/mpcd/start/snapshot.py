@@ -211,7 +211,7 @@ def _by_mass(case: Case, there: Snapshot) -> NDArray[np.int64]:
 
 
 def _whole(case: Case, there: Snapshot) -> Floats:
-    """Places (n, d), as if the box had no bounds where the file says in which image they are.
+    """Places (n, d), as if the box had no bounds where the file has their images.
 
     Raises CaseError for a bond so long that the images which it links are ambiguous.
     """
