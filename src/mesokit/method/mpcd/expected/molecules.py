@@ -299,7 +299,7 @@ def mode_times_of(case: Case, kind: int | str = 1) -> tuple[theory.RouseTimes | 
         return rouse_times_of(case, kind), rouse_note(case)
     note = "approximate: Zimm; hydrodynamics pre-averaged, large box"
     solution = solution_of(case, kind)
-    if solution is None:
+    if solution is None or solution.beads == 1:
         return None, "no theory of these molecules in a fluid"
     try:
         return theory.zimm_times(*solution), note
