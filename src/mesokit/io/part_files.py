@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.case.component import FromContents
+from mesokit.case.given.file import FromContents
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.shape.sampled import Sampled
 from mesokit.io.atomic import replacing
