@@ -104,11 +104,7 @@ def _found(solids: Solids, cells: tuple[int, ...], block: Block | None) -> tuple
         numbers.append(own[chosen])
         corners.append(every[chosen])
         starts.append(starts[-1] + len(chosen))
-    return (
-        np.array(starts, np.int64),
-        np.concatenate(numbers),
-        np.concatenate(corners),
-    )
+    return (np.array(starts, np.int64), np.concatenate(numbers), np.concatenate(corners))
 
 
 def _search(solids: Solids, every: Any, origin: tuple[float, ...]) -> Any:

@@ -8,15 +8,7 @@ import numpy as np
 
 from mesokit.case.box import at_time, peculiar
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import (
-    LANES,
-    SCRATCH_ROW,
-    groups_in,
-    lanes_in,
-    share,
-    strip_at,
-    strips_in,
-)
+from mesokit.loops.layout import LANES, SCRATCH_ROW, groups_in, lanes_in, share, strip_at, strips_in
 from mesokit.method.mpcd.engine.beads.molecules import Batch, fly_molecules
 from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, bead_to_strip, strip_to_bead
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM

@@ -69,13 +69,7 @@ class Domain:
     """
 
     def __init__(
-        self,
-        numbers: Numbers,
-        comm: Any,
-        tree: Tree,
-        threads: int,
-        molecules: int,
-        crowded: bool,
+        self, numbers: Numbers, comm: Any, tree: Tree, threads: int, molecules: int, crowded: bool
     ) -> None:
         self.crowded = crowded
         self.numbers, self.comm, self.tree, self.threads = numbers, comm, tree, threads

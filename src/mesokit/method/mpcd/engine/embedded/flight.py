@@ -98,10 +98,7 @@ def drift_particle(moving, n, counter, physics, time):
 def moved(physics, time, counter, moving, lane, r, v):
     """Place and velocity of the particle in a lane after a sub-step without forces."""
     if kind_of_solid(physics) is Nothing:
-        return lambda physics, time, counter, moving, lane, r, v: (
-            added_scaled(r, time, v),
-            v,
-        )
+        return lambda physics, time, counter, moving, lane, r, v: (added_scaled(r, time, v), v)
 
     def among_solids(physics, time, counter, moving, lane, r, v):
         m, number = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
@@ -135,9 +132,7 @@ def _(moving, step, box, physics, time):
         for t in range(worker.threads):
             total = plus(embedded.taken[t], i * len(zero), total)
         v = added_scaled(
-            load_velocity(beads, i, zero),
-            unit * inverse_mass_of(beads, i),
-            floats(total),
+            load_velocity(beads, i, zero), unit * inverse_mass_of(beads, i), floats(total)
         )
         store_velocity(beads, i, v)
 

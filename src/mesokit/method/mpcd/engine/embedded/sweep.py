@@ -8,14 +8,7 @@ import numpy as np
 from mesokit.geometry.protocol import leaps
 from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import (
-    LANES,
-    lanes_in,
-    share,
-    strip_at,
-    strips_in,
-    sums_length,
-)
+from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in, sums_length
 from mesokit.method.mpcd.collision.protocol import contribute
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, STREAM

@@ -8,13 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import SLIDING
-from mesokit.loops.layout import (
-    LANES,
-    SCRATCH_ROW,
-    strips_for,
-    sums_length,
-    zeros,
-)
+from mesokit.loops.layout import LANES, SCRATCH_ROW, strips_for, sums_length, zeros
 from mesokit.loops.threads import Threads
 from mesokit.method.mpcd.engine.beads.readings import SoluteReadings
 from mesokit.method.mpcd.engine.cpu.memory import Floats, Memory

@@ -32,13 +32,7 @@ from mesokit.scalar.gamma import gamma_number, likely
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.poisson import MOST_MEAN, MOST_NUMBER, none_found, one_more
-from mesokit.scalar.random import (
-    FIRST_VIRTUAL,
-    VIRTUAL_NUMBER,
-    VIRTUAL_VELOCITY,
-    normals,
-    words,
-)
+from mesokit.scalar.random import FIRST_VIRTUAL, VIRTUAL_NUMBER, VIRTUAL_VELOCITY, normals, words
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 ROWS = 14  # of the scratch memory of a batch of cells

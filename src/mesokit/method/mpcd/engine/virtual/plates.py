@@ -23,10 +23,7 @@ def ends(plates: Plates, size: tuple[int, ...]) -> list[tuple[int, float, float]
 
 
 def cut_cells(
-    plates: Plates,
-    size: tuple[int, ...],
-    cells: tuple[int, ...],
-    block: Block | None = None,
+    plates: Plates, size: tuple[int, ...], cells: tuple[int, ...], block: Block | None = None
 ) -> tuple[Any, ...]:
     """As `clearance.cut_cells`, for the one interval of offsets: starts, numbers and corners."""
     where = corners_of(cells, block)

@@ -13,12 +13,7 @@ from mesokit.case.box import fold
 from mesokit.kernels.part import stage
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.neighbours import MADE
-from mesokit.method.mpcd.engine.beads.state import (
-    AROUND,
-    OWN,
-    load_place,
-    load_velocity,
-)
+from mesokit.method.mpcd.engine.beads.state import AROUND, OWN, load_place, load_velocity
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.method.mpcd.engine.cpu.strips.rows import store_values
 from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of

@@ -12,14 +12,7 @@ from mesokit.case.box import SLIDING
 from mesokit.kernels.group import writer
 from mesokit.kernels.part import stage
 from mesokit.loops.clock import MOVE, lap
-from mesokit.loops.layout import (
-    LANES,
-    beads_of,
-    lanes_in,
-    place,
-    place_of_bead,
-    record_length,
-)
+from mesokit.loops.layout import LANES, beads_of, lanes_in, place, place_of_bead, record_length
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
