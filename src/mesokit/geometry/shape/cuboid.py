@@ -1,18 +1,13 @@
 """A cuboid, in 3D."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import field_validator
 
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
-from mesokit.geometry import region
+from mesokit.geometry.region import Region, Room, brick
 from mesokit.geometry.shape_protocol import Simple
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 
 @component
@@ -20,6 +15,7 @@ class Cuboid(Simple):
     """A cuboid (3D), turned about z by an angle."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
+    per_axis = ("centre", "size")
     shape: Literal["cuboid"] = tag("cuboid")
     centre: Many[float] = param(doc="its centre", unit="a")
     size: Many[float] = param(doc="its sides", unit="a")
@@ -32,11 +28,8 @@ class Cuboid(Simple):
             raise ValueError("expected positive lengths")
         return size
 
-    def body(self, room: Room) -> region.Region:
-        return region.brick(self.centre, self.size, self.angle)
+    def body(self, room: Room) -> Region:
+        return brick(self.centre, self.size, self.angle)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
         return self.centre
-
-    def vectors(self) -> dict[str, Any]:
-        return {"centre": self.centre, "size": self.size}

@@ -1,19 +1,14 @@
 """A round cylinder without ends, in 3D; with the fluid inside, a round pipe."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import field_validator
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either, Many
-from mesokit.geometry import region
+from mesokit.geometry.region import Region, Room, rod
 from mesokit.geometry.shape_protocol import Simple
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 
 @component
@@ -21,6 +16,7 @@ class Cylinder(Simple):
     """A round cylinder through the whole box (3D), along any direction that fits the box."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
+    per_axis = ("centre",)
     shape: Literal["cylinder"] = tag("cylinder")
     centre: Many[float] = param(doc="a place on its axis", unit="a")
     radius: float = param(doc="its radius", unit="a", gt=0)
@@ -41,14 +37,11 @@ class Cylinder(Simple):
         size = sum(x * x for x in self.axis) ** 0.5
         return tuple(x / size for x in self.axis)
 
-    def body(self, room: Room) -> region.Region:
-        return region.rod(self.centre, self.direction, self.radius)
+    def body(self, room: Room) -> Region:
+        return rod(self.centre, self.direction, self.radius)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
         return self.centre
 
     def axis_of_rotation(self, room: Room) -> tuple[float, ...]:
         return self.direction
-
-    def vectors(self) -> dict[str, Any]:
-        return {"centre": self.centre}

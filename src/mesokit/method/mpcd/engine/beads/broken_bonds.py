@@ -18,12 +18,10 @@ def note_broken(faults, step, one, other):
         faults[STEP], faults[FIRST], faults[SECOND] = step, one, np.int64(other)
 
 
-def first_broken(faults: NDArray[np.int64]) -> int | None:
-    """The first bead of the first bond that was broken in the last steps; None if none was."""
+def first_fault(faults: NDArray[np.int64]) -> tuple[int, int, int] | None:
+    """The first of what the threads noted in the last steps: step, and two numbers; else None."""
     noted = faults[faults[:, STEP] > 0]
-    if not len(noted):
-        return None
-    return int(min(map(tuple, noted[:, [STEP, FIRST, SECOND]].tolist()))[1])
+    return min(map(tuple, noted[:, :3].tolist()), default=None)
 
 
 def refuse_broken(faults: NDArray[np.int64], longest: float, name: str, advice: str) -> None:
@@ -31,9 +29,8 @@ def refuse_broken(faults: NDArray[np.int64], longest: float, name: str, advice: 
 
     `faults` has a row for each thread, `longest` is what no bond can reach.
     """
-    noted = faults[faults[:, STEP] > 0]
-    if len(noted):
-        step, first, second = min(map(tuple, noted[:, [STEP, FIRST, SECOND]].tolist()))
+    if found := first_fault(faults):
+        step, first, second = found
         raise RunError(
             f"step {step}: the bond of {name} {first} and {second} is longer than the "
             f"{longest:g} that it can be; {advice}"

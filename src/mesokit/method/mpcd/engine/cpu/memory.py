@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.geometry.solids.none import Nothing
-from mesokit.kernels.group import Packing
+from mesokit.geometry.protocol import Nothing
+from mesokit.kernels.packing import Packing
 from mesokit.loops.layout import (
     BLOCK,
     LANES,
@@ -47,7 +47,7 @@ MOST = 2**31 - 2
 
 
 class Memory:
-    """A fluid in memory: its arrays, and what its step is told of its physics.
+    """A fluid in memory: its arrays, and the parameters of its physics.
 
     `step` steps have been done. Arrays of all threads are made here, so that memory is known.
     """
@@ -93,8 +93,9 @@ class Memory:
 
     def _physics(self) -> Physics:
         numbers, fluid, d = self.numbers, self.numbers.case.fluid, self.numbers.dimension
+        rule = fluid.collision.kernel(d, fluid.kT)
         return Physics(
-            rule=self._rule(),
+            rule=fluid.collision.among(rule, tuple(numbers.counts), fluid.mass),
             thermostat=fluid.thermostat.kernel(fluid.kT, numbers.least_energy),
             field=fluid.force.kernel(numbers.case.box.size),
             solid=self._solid(),
@@ -110,11 +111,6 @@ class Memory:
             stress_scale=numbers.units["stress"],
         )
 
-    def _rule(self) -> Any:
-        numbers, fluid = self.numbers, self.numbers.case.fluid
-        kernel = fluid.collision.kernel(numbers.dimension, fluid.kT)
-        return fluid.collision.among(kernel, tuple(numbers.counts), fluid.mass)
-
     def _solid(self) -> tuple:
         """Parameters of the solids; plates alone have a kernel of their own."""
         numbers = self.numbers
@@ -128,13 +124,10 @@ class Memory:
         return bodies
 
     def _molecule(self) -> tuple:
-        """Parameters of what holds molecules together."""
-        fluid = self.numbers.case.fluid
+        fluid, d = self.numbers.case.fluid, self.numbers.dimension
         if fluid.molecule is None:
             return ()
-        kernel, links = fluid.molecule.kernel(
-            self.numbers.dimension, fluid.timestep, fluid.kT, fluid.mass
-        )
+        kernel, links = fluid.molecule.kernel(d, fluid.timestep, fluid.kT, fluid.mass)
         self._tables.append(links)
         return kernel
 
@@ -159,26 +152,21 @@ class Memory:
             self._taken(),
         )
         self.fluid.particles.ident[self.places] = np.arange(filling.molecules * beads)
-        spare = zeros(room * beads)
+        spare, order = zeros(room * beads), zeros(room * beads, np.int32)
         ends = zeros((self.threads, self.number_of_cells + 1), np.int32)
-        self.order = Order(
-            zeros(room * beads, np.int32), ends, spare, spare.view(np.int32), spare.view(np.int64)
-        )
+        self.order = Order(order, ends, spare, spare.view(np.int32), spare.view(np.int64))
         self.walls = self._walls()
 
     def _require_few(self, particles: int) -> None:
         """Raise RunError for more cells or particles than 32 bits can number, here or on a rank."""
         slots = 0 if self.domain is None else self.domain.slots
-        if self.number_of_cells + slots >= MOST:
-            raise RunError(
-                f"box.size: {self.number_of_cells} cells are more than one process can number; "
-                "expected several ranks, or more of them"
-            )
-        if particles >= MOST:
-            raise RunError(
-                f"fluid.density: {particles} particles are more than one process can number; "
-                "expected several ranks, or more of them"
-            )
+        cells = f"box.size: {self.number_of_cells} cells", self.number_of_cells + slots
+        for what, number in (cells, (f"fluid.density: {particles} particles", particles)):
+            if number >= MOST:
+                raise RunError(
+                    f"{what} are more than one process can number; expected several ranks, or more "
+                    "of them"
+                )
 
     @property
     def places(self) -> NDArray[np.int64]:
@@ -256,7 +244,7 @@ class Memory:
         return virtual.rates if virtual else np.zeros((2, self.numbers.dimension))
 
     def fill(self, positions: Floats, velocities: Floats, images: Any = 0) -> None:
-        """Write what is known of each particle (n, d), by particle number, in the present order."""
+        """Write positions, velocities and images (n, d), given by particle number."""
         ids = self.fluid.particles.ident[self.places]
         images = np.broadcast_to(images, positions.shape)
         self.put(ids, positions[ids], velocities[ids], images[ids])
@@ -269,12 +257,9 @@ class Memory:
         images: NDArray[Any],
         first: int = 0,
     ) -> None:
-        """Have these particles (n,), whole molecules, from this molecule on in memory."""
-        particles, d, start = (
-            self.fluid.particles,
-            self.numbers.dimension,
-            first * self.numbers.beads,
-        )
+        """Store these particles (n,), whole molecules, from this molecule on in memory."""
+        particles, d = self.fluid.particles, self.numbers.dimension
+        start = first * self.numbers.beads
         data, places = particles.data, self.places[start : start + len(ids)]
         particles.ident[places] = ids
         for k in range(d):
@@ -287,15 +272,10 @@ class Memory:
 
     def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """Positions and velocities as they lie in memory, and images (n, d), by particle number."""
-        ids, (positions, velocities, images) = (
-            self.fluid.particles.ident[self.places],
-            self.rows_of(),
-        )
-        out = np.empty((len(ids), 2 * self.numbers.dimension))
-        out[ids] = np.concatenate([positions, velocities], axis=1)
-        counts = np.empty(images.shape, np.int32)
-        counts[ids] = images
-        return out[:, : positions.shape[1]], out[:, positions.shape[1] :], counts
+        ids, rows = self.fluid.particles.ident[self.places], self.rows_of()
+        positions, velocities, images = (np.empty(row.shape, row.dtype) for row in rows)
+        positions[ids], velocities[ids], images[ids] = rows
+        return positions, velocities, images
 
     def rows_of(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """The same in the order of memory."""

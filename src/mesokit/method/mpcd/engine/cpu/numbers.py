@@ -72,13 +72,14 @@ class Numbers:
         names += ["energy"] * isinstance(self.energy, Column)
         names += fluid.collision.own_sums(d)
         self.scales = tuple(self.units[name] for name in names)
-        self.masses_of_kinds = [_on_grid(kind.mass, self.units["mass"]) for kind in fluid.kinds]
+        # rounded so that sums of masses are exact in fixed point
+        grid = self.units["mass"]
+        self.masses_of_kinds = [round(kind.mass * grid) / grid for kind in fluid.kinds]
         self.coefficient_count = fluid.collision.coefficient_count(d, fluid.thermostat.needs_energy)
         steps = 2.0 * SORT_DISTANCE_SQUARED * fluid.mass / (fluid.kT * fluid.timestep**2)
         self.sort_every = int(min(max(steps, 10), 100))
 
     def _energy(self) -> NotAsked | Column | WithCount:
-        """How cells learn their kinetic energy."""
         fluid = self.case.fluid
         sparse = self.uniform and fluid.density <= MOST_DENSITY
         if fluid.collision.needs_energy or (fluid.thermostat.needs_energy and not sparse):
@@ -158,8 +159,3 @@ def fastest_surface(case: Case) -> float:
         ),
         default=0.0,
     )
-
-
-def _on_grid(mass: float, scale: float) -> float:
-    """The mass rounded so that sums of masses are exact in fixed point."""
-    return round(mass * scale) / scale

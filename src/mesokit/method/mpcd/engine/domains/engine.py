@@ -14,12 +14,16 @@ from mesokit.loops.threads import Threads
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
-from mesokit.method.mpcd.engine.domains.blocks.balance import Balance, Load, still_good
+from mesokit.method.mpcd.engine.domains.blocks.balance import (
+    Balance,
+    Load,
+    Window,
+    still_good,
+    waiting,
+)
 from mesokit.method.mpcd.engine.domains.blocks.tree import Tree, divided
-from mesokit.method.mpcd.engine.domains.blocks.window import Window, waiting
 from mesokit.method.mpcd.engine.domains.deal import distributed
 from mesokit.method.mpcd.engine.domains.domain import Domain, axes_to_cut, owners
-from mesokit.method.mpcd.engine.domains.here import Here
 from mesokit.method.mpcd.engine.domains.messages.mpi import crowded
 from mesokit.method.mpcd.engine.domains.messages.shared import (
     DONE,
@@ -29,9 +33,16 @@ from mesokit.method.mpcd.engine.domains.messages.shared import (
     MOLECULES,
     STRETCHED,
 )
-from mesokit.method.mpcd.engine.domains.readings import SharedReadings, SharedSolutes
-from mesokit.method.mpcd.engine.domains.state import ROOT, SPREAD, Spread
-from mesokit.method.mpcd.engine.pieces import Piece, of_state, pieces, require_finite
+from mesokit.method.mpcd.engine.domains.readings import Here, SharedReadings, SharedSolutes
+from mesokit.method.mpcd.engine.pieces import (
+    ROOT,
+    SPREAD,
+    Piece,
+    Spread,
+    of_state,
+    pieces,
+    require_finite,
+)
 from mesokit.scalar.system import TICK
 
 
@@ -45,6 +56,13 @@ def pieces_of(memory: Memory) -> Iterator[Piece]:
 
 
 GROWTH = 1.1  # times as many molecules as there are, when arrays become too small
+FAULT_TEXTS = {
+    FULL: "more particles beyond the cells around a rank's block than it has room for; expected "
+    "fewer ranks",
+    STRETCHED: "a bead of solutes went farther in a step, or its bonds are longer, than ranks can "
+    "follow; expected fewer ranks or a shorter fluid.timestep",
+    FAR: "a particle came to a cell of a rank that is no neighbour; expected fewer ranks",
+}
 
 
 class Ranks(CPU):
@@ -75,7 +93,6 @@ class Ranks(CPU):
         self._allocate(tree, self.numbers.filling.molecules // comm.size)
 
     def _allocate(self, tree: Tree, molecules: int) -> None:
-        """Allocate memory for this rank's block in a tree."""
         size = self.threads.size
         earlier = self.memory if hasattr(self, "memory") else None
         self.domain = Domain(self.numbers, self.comm, tree, size, molecules, self._crowded)
@@ -98,26 +115,15 @@ class Ranks(CPU):
         """Store the particles of this block, out of these and those of other ranks."""
         beads, held = self.numbers.beads, 0
         self._count(0)
-        come = distributed(self.comm, particles, self.domain.owners, beads, self.dimension)
-        for piece in come:
+        owners = self.domain.owners
+        for piece in distributed(self.comm, particles, owners, beads, self.dimension):
             first, held = held, held + len(piece.ids) // beads
             if held > self.domain.room:
                 self._make_room(held)
             self._count(held)
             self.memory.put(*piece, first=first)
 
-    def _hold(
-        self, ids: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
-    ) -> None:
-        """Store these particles, and no others."""
-        molecules = len(ids) // self.numbers.beads
-        if molecules > self.domain.room:
-            self._allocate(self.domain.tree, molecules)
-        self._count(molecules)
-        self.memory.put(ids, positions, velocities, images)
-
     def _count(self, molecules: int) -> None:
-        """Set the number of molecules in memory."""
         fluid = self.memory.fluid
         filling: Any = fluid.particles.filling
         filling = filling._replace(molecules=molecules)
@@ -131,7 +137,10 @@ class Ranks(CPU):
         molecules = int(GROWTH * len(ids) / self.numbers.beads) + 1
         self._allocate(self.domain.tree, max(molecules, least))
         self._go_on_from(memory)
-        self._hold(ids, *rows)
+        if (held := len(ids) // self.numbers.beads) > self.domain.room:
+            self._allocate(self.domain.tree, held)
+        self._count(held)
+        self.memory.put(ids, *rows)
 
     def _go_on_from(self, memory: Memory) -> None:
         """Copy all that belongs to no particle of the fluid from earlier memory."""
@@ -168,13 +177,10 @@ class Ranks(CPU):
     def sort(self) -> None:
         with self._window.timing(self):
             super().sort()
-        if self.step > 0:
-            self._balance()
-
-    def _balance(self) -> None:
-        """Move borders if the last two windows were unbalanced."""
-        windows = self.balancing.received_times()
-        if windows:
+        if self.step == 0:
+            return
+        # Borders move if the last two windows were unbalanced.
+        if windows := self.balancing.received_times():
             kept = still_good(self.domain.tree, windows, self.balancing.limit)
             if kept.nodes != self.domain.tree.nodes:
                 self.rebalance(kept)
@@ -224,31 +230,18 @@ class Ranks(CPU):
 
     def balance(self) -> dict[str, Any]:
         """Number of moves of borders, and most over mean of the ranks' work at first and lately."""
-        known = self.balancing
-        found: dict[str, Any] = {"borders moved": len(known.moves)}
-        if not np.isnan(known.first):
-            found |= {"most over mean at first": known.first, "of late": known.last}
-        return found
+        known, found = self.balancing, {"borders moved": len(self.balancing.moves)}
+        if np.isnan(known.first):
+            return found
+        return found | {"most over mean at first": known.first, "of late": known.last}
 
     def _check_messages(self, noted: NDArray[np.int64]) -> None:
         faults, post = int(noted[FAULTS]), self.memory.fluid.cells.shared.post
         if post.flag[1]:
             raise RunError(f"step {self.step}: a message to another rank failed")
-        if faults & FULL:
-            raise RunError(
-                f"step {self.step}: more particles beyond the cells around a rank's block than it "
-                "has room for; expected fewer ranks"
-            )
-        if faults & STRETCHED:
-            raise RunError(
-                f"step {self.step}: a bead of solutes went farther in a step, or its bonds are "
-                "longer, than ranks can follow; expected fewer ranks or a shorter fluid.timestep"
-            )
-        if faults & FAR:
-            raise RunError(
-                f"step {self.step}: a particle came to a cell of a rank that is no neighbour; "
-                "expected fewer ranks"
-            )
+        for fault, text in FAULT_TEXTS.items():
+            if faults & fault:
+                raise RunError(f"step {self.step}: {text}")
 
     @property
     def here(self) -> Here:

@@ -74,5 +74,4 @@ def read_sums(physics, found):
 
 @elementwise
 def _floats(n, found, scales):
-    """The sums of n particles as floats."""
     return "from_fixed(found[{k} + 1], n, scales[{k}])"
