@@ -68,7 +68,7 @@ WHOLE, WORD = np.int64(1), np.uint64(1)
 COUNTER = random.Counter(WORD, WORD)
 HIT = solids.Chance(WORD, WORD, WHOLE, WHOLE, 1.0)
 MOST_SUMS, MOST_COEFFICIENTS = 18, 12
-ENERGIES = (cell_energy.NotAsked(), cell_energy.Column(), cell_energy.WithCount(1.0))
+ENERGIES = (cell_energy.NotNeeded(), cell_energy.Column(), cell_energy.WithCount(1.0))
 
 
 TABLE = tempfile.NamedTemporaryFile("w", suffix=".txt")  # noqa: SIM115  as long as the tests
@@ -212,7 +212,7 @@ def physics(d: int, **parts: Any) -> Physics:
         "field": NoForce().kernel((8,) * d),
         "solid": Nothing(),
         "masses": (1.0,),
-        "energy": cell_energy.NotAsked(),
+        "energy": cell_energy.NotNeeded(),
         "timestep": 0.1,
         "kT": 1.0,
         "molecule": (),

@@ -38,7 +38,7 @@ def touches(solid, clear, r, v, a, time):
 
 @generic
 def leaps(solid, displacement):
-    """Whether a way is longer than a stride, of solids in tables: `clear` may not be so large."""
+    """Whether a displacement is longer than a stride, for solids in tables: `clear` may fail."""
 
 
 @generic

@@ -171,7 +171,24 @@ class Shape(Wall):
         return (0.0, 0.0, 1.0)
 
 
-# What other shapes can be made of. One family lies within the other.
+class Centred:
+    """Mixin of shapes that turn about their centre."""
+
+    centre: Any
+    per_axis = ("centre",)
+
+    def pivot(self, room: Room) -> tuple[float, ...]:
+        return tuple(self.centre)
+
+
+def positive(lengths: tuple[float, ...] | None) -> tuple[float, ...] | None:
+    """Lengths as they are. Raises ValueError if one is not positive."""
+    if lengths is not None and not all(x > 0 for x in lengths):
+        raise ValueError("expected positive lengths")
+    return lengths
+
+
+# Families of shapes of which others can be made. One lies within the other.
 
 
 @family("shape to repeat", "shape", "mesokit.shape")

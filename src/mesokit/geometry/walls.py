@@ -29,7 +29,7 @@ class Walls(NamedTuple):
     contact: tuple[str, ...] = ()
 
     def problems(self, case: Case) -> Iterator[str]:
-        """What is wrong with the walls of a case, key first."""
+        """Faults of the walls of a case, key first."""
         yield from _shapes(case)
         for i, wall in enumerate(case.walls):
             if wall.virtual != "extrapolate" and not self.virtual:
@@ -140,7 +140,7 @@ def _shapes(case: Case) -> Iterator[str]:
 
 
 def _absent(wall: Any, box: tuple[int, ...]) -> str:
-    """What is wrong with a solid of which no surface is in the box, key first."""
+    """The fault of a solid of which no surface is in the box, key first."""
     known = ("radius", "size", "width", "parts", "of", "file")
     inside = wall.fluid == "inside"
     keys = known if inside else ("file", "parts", "of", *wall.vectors(), *known)

@@ -51,7 +51,6 @@ def _can_copy() -> bool:
 
 
 def _has_a_core() -> bool:
-    """Whether another process of this user would have a core of its own."""
     if sys.platform != "linux" or "mpi4py.MPI" in sys.modules:
         return False
     return len(os.sched_getaffinity(0)) > 1

@@ -39,9 +39,8 @@ class Counts:
 
     def add_made(self, other: Counts) -> None:
         """Count what another process made for this one."""
-        self.parts_made += other.parts_made
-        self.stages_made += other.stages_made
-        self.kernels_made += other.kernels_made
+        for name in ("parts_made", "stages_made", "kernels_made"):
+            setattr(self, name, getattr(self, name) + getattr(other, name))
         self.reasons.update(other.reasons)
 
 

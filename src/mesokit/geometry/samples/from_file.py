@@ -37,7 +37,7 @@ class FromFile(FromContents, Shape):
         """Its signed distance, positive outside."""
 
     def distances(self, room: Room) -> Grid:
-        """The same, found once for what the file held."""
+        """`grid`, made once for the contents of the file."""
         return _found(self, self.digest, room)
 
     def body(self, room: Room) -> Region:

@@ -34,7 +34,7 @@ class CosineChannel(Shape):
             )
 
     def body(self, room: Room) -> Region:
-        """What lies beyond both walls."""
+        """The region beyond both walls."""
         along, across = AXES.index(self.axis), AXES.index(self.across)
         per_length = self.waves / room.size[along]
         middle = 0.5 * room.size[across]

@@ -7,11 +7,11 @@ from pydantic import field_validator
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry.region import Region, Room, brick
-from mesokit.geometry.shape_protocol import Simple
+from mesokit.geometry.shape_protocol import Centred, Simple, positive
 
 
 @component
-class Cuboid(Simple):
+class Cuboid(Centred, Simple):
     """A cuboid (3D), turned about z by an angle."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
@@ -21,15 +21,7 @@ class Cuboid(Simple):
     size: Many[float] = param(doc="its sides", unit="a")
     angle: float = param(0.0, doc="turn about z, counter-clockwise", unit="degrees")
 
-    @field_validator("size")
-    @classmethod
-    def _positive(cls, size: tuple[float, ...]) -> tuple[float, ...]:
-        if not all(x > 0 for x in size):
-            raise ValueError("expected positive lengths")
-        return size
+    _positive = field_validator("size")(positive)
 
     def body(self, room: Room) -> Region:
         return brick(self.centre, self.size, self.angle)
-
-    def pivot(self, room: Room) -> tuple[float, ...]:
-        return self.centre

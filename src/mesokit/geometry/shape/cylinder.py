@@ -8,15 +8,14 @@ from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either, Many
 from mesokit.geometry.region import Region, Room, rod
-from mesokit.geometry.shape_protocol import Simple
+from mesokit.geometry.shape_protocol import Centred, Simple
 
 
 @component
-class Cylinder(Simple):
+class Cylinder(Centred, Simple):
     """A round cylinder through the whole box (3D), along any direction that fits the box."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
-    per_axis = ("centre",)
     shape: Literal["cylinder"] = tag("cylinder")
     centre: Many[float] = param(doc="a place on its axis", unit="a")
     radius: float = param(doc="its radius", unit="a", gt=0)
@@ -39,9 +38,6 @@ class Cylinder(Simple):
 
     def body(self, room: Room) -> Region:
         return rod(self.centre, self.direction, self.radius)
-
-    def pivot(self, room: Room) -> tuple[float, ...]:
-        return self.centre
 
     def axis_of_rotation(self, room: Room) -> tuple[float, ...]:
         return self.direction

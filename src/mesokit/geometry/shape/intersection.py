@@ -1,4 +1,4 @@
-"""What several shapes have in common, as one solid."""
+"""The common part of several shapes as one solid."""
 
 from typing import Literal
 

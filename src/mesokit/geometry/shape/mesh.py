@@ -245,7 +245,6 @@ def _cut(corners: Floats, level: float) -> Floats:
 
 
 def _ends(parts: Sequence[Closed]) -> tuple[Floats, Floats]:
-    """The lowest and the highest coordinates of them all."""
     low = np.min([part.corners.min(axis=(0, 1)) for part in parts], axis=0)
     return low, np.max([part.corners.max(axis=(0, 1)) for part in parts], axis=0)
 

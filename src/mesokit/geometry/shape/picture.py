@@ -18,6 +18,7 @@ from mesokit.case.describe.hints import Either
 from mesokit.geometry.region import Room
 from mesokit.geometry.samples.distances import Grid, spans
 from mesokit.geometry.samples.from_file import FromFile
+from mesokit.geometry.shape_protocol import positive
 
 Floats = NDArray[np.float64]
 REACH = 4.0  # cells from the outline in which distances are kept
@@ -51,12 +52,7 @@ class Picture(FromFile):
         None, doc="its width and height (those of the box unless said)", unit="a"
     )
 
-    @field_validator("size")
-    @classmethod
-    def _positive(cls, size: tuple[float, ...] | None) -> tuple[float, ...] | None:
-        if size is not None and not all(x > 0 for x in size):
-            raise ValueError("expected positive lengths")
-        return size
+    _positive = field_validator("size")(positive)
 
     def frame(self, room: Room) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Its lower left corner, and its width and height."""

@@ -73,7 +73,7 @@ def clear_squares(solids: Solids, bend: float, held: Held | None = None) -> tupl
     """Square of a lower bound of the clearance in small cubes that fill the box, or the cells held,
     x varying fastest, and then 0; and their number to a cell along each axis.
 
-    No flight is farther than `bend` from the straight way to its end. Plates do not count.
+    No flight is farther than `bend` from the straight line to its end. Plates do not count.
     """
     d = solids.dimension
     held = held or whole(solids)

@@ -31,7 +31,7 @@ def _(solid, clear, r, v, a, time):
 
 @by_type
 def beyond(solid, clear, r, ahead):
-    """Whether a way leads farther than is known to be clear: a stride, or what `clear` says."""
+    """Whether a displacement exceeds what is surely clear: a stride, or the distance in `clear`."""
     if len(clear) == 0:
         return lambda solid, clear, r, ahead: dot(ahead, ahead) >= solid.stride * solid.stride
 

@@ -33,8 +33,7 @@ def cut_cells(
     each offset start, their numbers in the grid (entries,), and their lower corners there
     (entries, d), as whole numbers; by offset, and then by number."""
     if block is None:
-        found: tuple[Any, Any, Any] = _of_all(_found, solids, cells, None)
-        return found
+        return _of_all(_found, solids, cells, None)
     chosen, offsets = _of_tiles(solids, cells, block)
     _, numbers, corners = _joined(_found, solids, cells, block)
     number = math.prod([OFFSETS[solids.dimension]] * solids.dimension)
@@ -49,8 +48,7 @@ def cut_planes(
     """For each of these the normal (entries, d) and height of the plane that cuts it, its middle in
     the box, its term, and the cell of the box in which the surface lies nearest to its middle."""
     if block is None:
-        found: tuple[Any, ...] = _of_all(_planes, solids, cells, None)
-        return found
+        return _of_all(_planes, solids, cells, None)
     chosen, _ = _of_tiles(solids, cells, block)
     return tuple(column[chosen] for column in _joined(_planes, solids, cells, block))
 

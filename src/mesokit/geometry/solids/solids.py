@@ -38,7 +38,7 @@ def _places(along: Sequence[Any]) -> Floats:
 
 
 def slit_of(case: Case) -> Plates | None:
-    """The two plates, if these are all walls: the step has a shorter way for them."""
+    """The two plates, if these are all walls: the step has simpler code for them."""
     return case.walls[0] if _is_slit(case.walls) else None
 
 

@@ -58,7 +58,6 @@ class SolidTables:
         return blocks
 
     def _near(self, away: float, above: Blocks, edge: int) -> Blocks:
-        """The terms that may matter in smaller blocks."""
         number = math.prod(-(-length // edge) for length in self.size)
         starts, least = np.zeros(number + 1, np.int64), np.zeros(number)
         counted = Blocks(edge, starts, np.zeros(0, np.int64), least)

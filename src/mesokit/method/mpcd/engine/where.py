@@ -11,14 +11,9 @@ from mesokit.scalar.jit import by_type
 def where(otherwise: str = "None", **needs: Callable[[Any], Any]) -> Callable[[Callable], Any]:
     """Compile a function, or a stage, only where the types of its arguments fulfil conditions.
 
-    For other types a call is replaced by `otherwise`, and nothing of the function is compiled.
-
-    Parameters
-    ----------
-    otherwise : str
-        An expression of the arguments.
-    needs : functions
-        Conditions on the numba type of an argument, by its name: `len` for a tuple that may be ().
+    For other types a call is replaced by `otherwise`, an expression of the arguments, and nothing
+    of the function is compiled. `needs` are functions of the numba type of an argument, by its
+    name: `len` for a tuple that may be ().
 
     Examples
     --------

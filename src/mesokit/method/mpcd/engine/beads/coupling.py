@@ -15,7 +15,7 @@ from mesokit.method.mpcd.collision.protocol import Cell, contribute, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.engine.beads.state import PRESENT, bead_of, mass_of, number_of
 from mesokit.method.mpcd.engine.cpu.collide import as_many, draw_with_care
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import asks
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import needs_energy
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.method.mpcd.engine.cpu.strips.terms import read_sums, sums_of_cell
 from mesokit.method.mpcd.engine.domains.messages.shared import key_of
@@ -113,7 +113,7 @@ def with_random_solvent(solvent, beads, physics, counter, cell, total):
         a, b, e, f = words(counter, CELL_VIRTUAL, cell, 0)
         v = scaled(math.sqrt(physics.kT / m), normals(zero, a, b, e, f))
         n, mass, momentum = n + number, mass + m, added(momentum, scaled(m, v))
-        if asks(physics.energy):
+        if needs_energy(physics.energy):
             inner = gamma_number(float(d * (number - 1)), counter, VIRTUAL_NUMBER, cell)
             energy += m * dot(v, v) + 2.0 * physics.kT * inner
         key = (FIRST_BEAD + len(beads.cell) + np.int64(cell), 0)

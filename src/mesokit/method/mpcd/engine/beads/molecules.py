@@ -11,8 +11,7 @@ import numpy as np
 from mesokit.geometry.protocol import Nothing, touches
 from mesokit.loops.layout import LANES, SCRATCH_ROW
 from mesokit.loops.threads import Worker
-from mesokit.method.mpcd.engine.beads.broken_bonds import note_broken
-from mesokit.method.mpcd.engine.beads.interactions import Virial
+from mesokit.method.mpcd.engine.beads.interactions import Virial, note_broken
 from mesokit.method.mpcd.engine.beads.links import Kick, each_link
 from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, load_bead, store_bead
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet

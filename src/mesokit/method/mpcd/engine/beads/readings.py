@@ -9,9 +9,8 @@ from mesokit.case.box import fold
 from mesokit.errors import RunError
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.threads import Worker
-from mesokit.method.mpcd.engine.beads.broken_bonds import first_fault, refuse_broken
 from mesokit.method.mpcd.engine.beads.external import external_energy
-from mesokit.method.mpcd.engine.beads.interactions import Energy
+from mesokit.method.mpcd.engine.beads.interactions import Energy, first_fault, refuse_broken
 from mesokit.method.mpcd.engine.beads.neighbours import MADE, refresh
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.beads.traverse import each_on_bead

@@ -13,7 +13,7 @@ from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.loops.clock import BEADS, CELLS, FINISH, FIRST, SORT, SWEEP
 from mesokit.loops.threads import Threads
-from mesokit.method.mpcd.engine.beads.broken_bonds import refuse_broken
+from mesokit.method.mpcd.engine.beads.interactions import refuse_broken
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, MEASURE_WALLS, Course
 from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
@@ -212,28 +212,33 @@ class CPU:
         Raises RunError if sums have overflowed.
         """
         self.check()
-        memory = self.memory
-        positions, velocities, images = memory.read()
         return {
             **(self.solutes.state() if self.solutes else {}),
-            "positions": positions,
-            "velocities": velocities,
-            "images": images,
+            **self._state_of_particles(),
             "step": np.int64(self.step),
             **self.readings.state_of_walls(),
-            "wall_rates": memory.wall_rates.copy(),
+            "wall_rates": self.readings.wall_rates(),
         }
+
+    def _state_of_particles(self) -> dict[str, Any]:
+        return dict(zip(("positions", "velocities", "images"), self.memory.read(), strict=True))
 
     def restore(self, state: Mapping[str, NDArray]) -> None:
         """Go on from a state, with the same bits whatever the number of threads was."""
-        memory, taken = self.memory, self.memory.fluid.taken
+        self._restore(state, self._given(state))
+
+    def _given(self, state: Mapping[str, Any]) -> Iterator[Piece]:
         require_finite(state)
+        yield from of_state(state, (self.n, self.dimension), self.numbers.beads)
+
+    def _restore(self, state: Mapping[str, NDArray], particles: Iterable[Piece]) -> None:
+        """Go on from these particles, and from all else in a state."""
         self.readings.forget()
-        taken.faults[:] = 0
-        self._take(of_state(state, (self.n, self.dimension), self.numbers.beads))
-        memory.step = int(state["step"])
+        self.memory.fluid.taken.faults[:] = 0
+        self._take(particles)
+        self.memory.step = int(state["step"])
         self.readings.restore_walls(state)
-        memory.wall_rates[:] = state["wall_rates"]
+        self.memory.wall_rates[:] = state["wall_rates"]
         if self.solutes is not None:
             self.solutes.restore(dict(state))
 

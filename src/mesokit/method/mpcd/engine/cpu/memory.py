@@ -11,18 +11,8 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.geometry.protocol import Nothing
 from mesokit.kernels.packing import Packing
-from mesokit.loops.layout import (
-    BLOCK,
-    LANES,
-    ROW,
-    SCRATCH_ROW,
-    blocks_for,
-    places_of_beads,
-    record_length,
-    strips_for,
-    sums_length,
-    zeros,
-)
+from mesokit.loops import layout
+from mesokit.loops.layout import LANES, zeros
 from mesokit.method.mpcd.engine.beads.allocate import allocate_beads
 from mesokit.method.mpcd.engine.beads.registers import bead_size
 from mesokit.method.mpcd.engine.cell_gradient import Field
@@ -93,7 +83,10 @@ class Memory:
 
     def _physics(self) -> Physics:
         numbers, fluid, d = self.numbers, self.numbers.case.fluid, self.numbers.dimension
-        rule = fluid.collision.kernel(d, fluid.kT)
+        rule, molecule = fluid.collision.kernel(d, fluid.kT), ()
+        if fluid.molecule is not None:
+            molecule, links = fluid.molecule.kernel(d, fluid.timestep, fluid.kT, fluid.mass)
+            self._tables.append(links)
         return Physics(
             rule=fluid.collision.among(rule, tuple(numbers.counts), fluid.mass),
             thermostat=fluid.thermostat.kernel(fluid.kT, numbers.least_energy),
@@ -103,7 +96,7 @@ class Memory:
             energy=numbers.energy,
             timestep=fluid.timestep,
             kT=fluid.kT,
-            molecule=self._molecule(),
+            molecule=molecule,
             zero=(0.0,) * d,
             coefficients=(0.0,) * numbers.coefficient_count,
             terms=(0,) * len(numbers.scales),
@@ -123,16 +116,8 @@ class Memory:
         self._tables.append(tables)
         return bodies
 
-    def _molecule(self) -> tuple:
-        fluid, d = self.numbers.case.fluid, self.numbers.dimension
-        if fluid.molecule is None:
-            return ()
-        kernel, links = fluid.molecule.kernel(d, fluid.timestep, fluid.kT, fluid.mass)
-        self._tables.append(links)
-        return kernel
-
     def _allocate(self) -> None:
-        numbers, d = self.numbers, self.numbers.dimension
+        numbers, threads, d = self.numbers, self.threads, self.numbers.dimension
         filling, beads, room = numbers.filling, numbers.beads, numbers.filling.molecules
         self.cells, self.number_of_cells = numbers.cells, numbers.number_of_cells
         if self.domain is not None:
@@ -140,20 +125,39 @@ class Memory:
             self.cells, self.number_of_cells = self.domain.region.known, self.domain.region.number
         self._require_few(room * beads)
         self.rows = 2 * d + (not numbers.uniform)
-        self.strips = strips_for(room, beads)
-        lanes = blocks_for(self.strips * LANES) * BLOCK
-        data, image = zeros(lanes // BLOCK * self.rows * ROW), zeros((d, lanes), np.int32)
+        self.strips = layout.strips_for(room, beads)
+        lanes = layout.blocks_for(self.strips * LANES) * layout.BLOCK
+        data, image = (
+            zeros(lanes // layout.BLOCK * self.rows * layout.ROW),
+            zeros((d, lanes), np.int32),
+        )
         cell = zeros(lanes, np.int32)
+        most = max(numbers.coefficient_count, 2 * d)
+        bodies = len(numbers.solids.bodies) if numbers.solids else 0
+        surfaces = 2 if numbers.slit else bodies
+        strips = self.strips if "stress" in self.measures else 1
         self.fluid = FluidMemory(
             Particles(data, cell, np.arange(lanes), image, filling, self.rows),
             self._cells(),
             zeros((2, self.strips * (LANES // FEW))),
-            self._scratch(),
-            self._taken(),
+            Scratch(
+                coefficients=zeros((threads, most * layout.SCRATCH_ROW)),
+                terms=zeros(
+                    (threads, (len(self.physics.terms) + 1) * layout.SCRATCH_ROW), np.int64
+                ),
+                marks=zeros((threads, LANES), np.int64),
+                clear=zeros((threads, beads * layout.SCRATCH_ROW), np.int32),
+                beads=zeros((threads, beads * bead_size(d) if beads > 1 else 1)),
+            ),
+            Taken(
+                impulse=zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64),
+                tensor=zeros((2 + (beads > 1), strips, 2 * d * d), np.int64),
+                faults=zeros((threads, 8), np.int64),
+            ),
         )
         self.fluid.particles.ident[self.places] = np.arange(filling.molecules * beads)
         spare, order = zeros(room * beads), zeros(room * beads, np.int32)
-        ends = zeros((self.threads, self.number_of_cells + 1), np.int32)
+        ends = zeros((threads, self.number_of_cells + 1), np.int32)
         self.order = Order(order, ends, spare, spare.view(np.int32), spare.view(np.int64))
         self.walls = self._walls()
 
@@ -176,19 +180,19 @@ class Memory:
         if (molecules, beads) != self._placed:
             self._places = np.arange(molecules)
             if beads > 1:
-                self._places = places_of_beads(molecules, beads).ravel()
+                self._places = layout.places_of_beads(molecules, beads).ravel()
             self._placed = molecules, beads
         return self._places
 
     def _cells(self) -> Cells:
         # in the last, lanes that must not act leave their terms
         every = self.number_of_cells + 1
-        width = sums_length(len(self.physics.terms))
+        width = layout.sums_length(len(self.physics.terms))
         shared = () if self.domain is None else self.domain.shared(self)
         slots = 0 if self.domain is None else self.domain.slots
         return Cells(
             self.number_of_cells,
-            zeros((every + slots) * record_length(self.numbers.coefficient_count)),
+            zeros((every + slots) * layout.record_length(self.numbers.coefficient_count)),
             zeros((self.threads, every * width), np.int64),
             self._field(),
             shared,
@@ -204,28 +208,6 @@ class Memory:
         closed = tuple(int(shut) for shut in numbers.closed)
         term, values = len(numbers.scales) - own + wanted, zeros(self.number_of_cells)
         return Field(term, values, tuple(self.cells), closed)
-
-    def _scratch(self) -> Scratch:
-        d, threads, beads = self.numbers.dimension, self.threads, self.numbers.beads
-        most = max(self.numbers.coefficient_count, 2 * d)
-        return Scratch(
-            coefficients=zeros((threads, most * SCRATCH_ROW)),
-            terms=zeros((threads, (len(self.physics.terms) + 1) * SCRATCH_ROW), np.int64),
-            marks=zeros((threads, LANES), np.int64),
-            clear=zeros((threads, beads * SCRATCH_ROW), np.int32),
-            beads=zeros((threads, beads * bead_size(d) if beads > 1 else 1)),
-        )
-
-    def _taken(self) -> Taken:
-        numbers, d, threads = self.numbers, self.numbers.dimension, self.threads
-        bodies = len(numbers.solids.bodies) if numbers.solids else 0
-        surfaces = 2 if numbers.slit else bodies
-        strips = self.strips if "stress" in self.measures else 1
-        return Taken(
-            impulse=zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64),
-            tensor=zeros((2 + (numbers.beads > 1), strips, 2 * d * d), np.int64),
-            faults=zeros((threads, 8), np.int64),
-        )
 
     def _walls(self) -> Walls:
         numbers, virtual = self.numbers, self.numbers.virtual
@@ -296,12 +278,8 @@ class Memory:
     def at(self, row: int, places: Any = None) -> NDArray[np.int64]:
         """Where a row's values lie in memory: those of all particles, or at these places."""
         places = self.places if places is None else places
-        return places // BLOCK * (self.rows * ROW) + row * ROW + places % BLOCK
-
-    @property
-    def bytes_held(self) -> int:
-        """Memory of all arrays."""
-        fluid, order = self.fluid, self.order
-        groups = (*fluid.particles, *fluid.cells, fluid.room, *fluid.scratch, *fluid.taken)
-        arrays = (*groups, order.order, order.ends, order.spare)
-        return sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
+        return (
+            places // layout.BLOCK * (self.rows * layout.ROW)
+            + row * layout.ROW
+            + places % layout.BLOCK
+        )

@@ -39,20 +39,8 @@ def axes_to_cut(numbers: Numbers) -> tuple[float, ...]:
 class Domain:
     """The cells of one rank, and those that it shares with partners.
 
-    Parameters
-    ----------
-    numbers : Numbers
-        Of the case.
-    comm : mpi4py communicator
-        Of all ranks.
-    tree : Tree
-        The block of each rank.
-    threads : int
-        Of this rank.
-    molecules : int
-        Approximate number that the rank will hold.
-    crowded : bool
-        Whether ranks share cores.
+    `tree` has the block of each rank, `molecules` is the approximate number that this rank will
+    hold, `crowded` is true if ranks share cores.
     """
 
     def __init__(

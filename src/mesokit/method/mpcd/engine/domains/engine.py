@@ -24,24 +24,15 @@ from mesokit.method.mpcd.engine.domains.blocks.balance import (
 from mesokit.method.mpcd.engine.domains.blocks.tree import Tree, divided
 from mesokit.method.mpcd.engine.domains.deal import distributed
 from mesokit.method.mpcd.engine.domains.domain import Domain, axes_to_cut, owners
+from mesokit.method.mpcd.engine.domains.messages import shared
 from mesokit.method.mpcd.engine.domains.messages.mpi import crowded
-from mesokit.method.mpcd.engine.domains.messages.shared import (
-    DONE,
-    FAR,
-    FAULTS,
-    FULL,
-    MOLECULES,
-    STRETCHED,
-)
 from mesokit.method.mpcd.engine.domains.readings import Here, SharedReadings, SharedSolutes
 from mesokit.method.mpcd.engine.pieces import (
     ROOT,
     SPREAD,
     Piece,
     Spread,
-    of_state,
     pieces,
-    require_finite,
 )
 from mesokit.scalar.system import TICK
 
@@ -57,11 +48,11 @@ def pieces_of(memory: Memory) -> Iterator[Piece]:
 
 GROWTH = 1.1  # times as many molecules as there are, when arrays become too small
 FAULT_TEXTS = {
-    FULL: "more particles beyond the cells around a rank's block than it has room for; expected "
-    "fewer ranks",
-    STRETCHED: "a bead of solutes went farther in a step, or its bonds are longer, than ranks can "
-    "follow; expected fewer ranks or a shorter fluid.timestep",
-    FAR: "a particle came to a cell of a rank that is no neighbour; expected fewer ranks",
+    shared.FULL: "more particles beyond the cells around a rank's block than it has room for; "
+    "expected fewer ranks",
+    shared.STRETCHED: "a bead of solutes went farther in a step, or its bonds are longer, than "
+    "ranks can follow; expected fewer ranks or a shorter fluid.timestep",
+    shared.FAR: "a particle came to a cell of a rank that is no neighbour; expected fewer ranks",
 }
 
 
@@ -128,7 +119,7 @@ class Ranks(CPU):
         filling: Any = fluid.particles.filling
         filling = filling._replace(molecules=molecules)
         self.memory.fluid = fluid._replace(particles=fluid.particles._replace(filling=filling))
-        fluid.cells.shared.noted[MOLECULES] = molecules
+        fluid.cells.shared.noted[shared.MOLECULES] = molecules
 
     def _make_room(self, least: int = 0) -> None:
         """Allocate larger arrays, for the particles of this rank and at least so many molecules."""
@@ -163,11 +154,11 @@ class Ranks(CPU):
             with self._window.timing(self):
                 super()._steps(left, what)
             noted = self.memory.fluid.cells.shared.noted
-            self.memory.step = before + int(noted[DONE])
-            left -= int(noted[DONE])
+            self.memory.step = before + int(noted[shared.DONE])
+            left -= int(noted[shared.DONE])
             self._check_messages(noted)
             if steps:
-                self._count(int(noted[MOLECULES]))
+                self._count(int(noted[shared.MOLECULES]))
             if left <= 0:
                 return
             self._make_room()
@@ -194,7 +185,7 @@ class Ranks(CPU):
         tree = divided(cells, self.comm.size, weights, load.layers, kept)
         if tree.blocks != self.domain.tree.blocks:
             self.move_borders(tree)
-        self.balancing.moved(self.step, tree.blocks)
+        self.balancing.moved()
 
     def _costs(self) -> Floats:
         """Seconds of this rank's work in each of its cells, x varying fastest."""
@@ -230,13 +221,13 @@ class Ranks(CPU):
 
     def balance(self) -> dict[str, Any]:
         """Number of moves of borders, and most over mean of the ranks' work at first and lately."""
-        known, found = self.balancing, {"borders moved": len(self.balancing.moves)}
+        known, found = self.balancing, {"borders moved": self.balancing.moves}
         if np.isnan(known.first):
             return found
         return found | {"most over mean at first": known.first, "of late": known.last}
 
     def _check_messages(self, noted: NDArray[np.int64]) -> None:
-        faults, post = int(noted[FAULTS]), self.memory.fluid.cells.shared.post
+        faults, post = int(noted[shared.FAULTS]), self.memory.fluid.cells.shared.post
         if post.flag[1]:
             raise RunError(f"step {self.step}: a message to another rank failed")
         for fault, text in FAULT_TEXTS.items():
@@ -263,36 +254,17 @@ class Ranks(CPU):
 
     # --- its state ------------------------------------------------------------------------------
 
-    def state(self) -> dict[str, Any]:
-        """As of `CPU`; positions, velocities and images come piece by piece (`Spread`), until the
-        next step."""
-        self.check()
-        comm, shape, rows = self.comm, (self.n, self.dimension), self.readings.rows_in_memory
+    def _state_of_particles(self) -> dict[str, Any]:
+        """Positions, velocities and images that come piece by piece, until the next step."""
+        shape, rows = (self.n, self.dimension), self.readings.rows_in_memory
+        kinds = dict.fromkeys(SPREAD, np.float64) | {"images": np.int32}
         return {
-            **(self.solutes.state() if self.solutes else {}),
-            "positions": Spread(comm, shape, np.float64, partial(rows, "positions")),
-            "velocities": Spread(comm, shape, np.float64, partial(rows, "velocities")),
-            "images": Spread(comm, shape, np.int32, partial(rows, "images")),
-            "step": np.int64(self.step),
-            **self.readings.state_of_walls(),
-            "wall_rates": self.readings.wall_rates(),
+            name: Spread(self.comm, shape, kind, partial(rows, name))
+            for name, kind in kinds.items()
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Continue from a state, which only the first rank needs."""
         root = self.comm.rank == ROOT
         plain = {k: np.asarray(v) for k, v in state.items() if k not in SPREAD} if root else None
-        plain = self.comm.bcast(plain, ROOT)
-        self.readings.forget()
-        self.memory.fluid.taken.faults[:] = 0
-        self._take(self._given(state) if root else ())
-        memory = self.memory
-        memory.step = int(plain["step"])
-        self.readings.restore_walls(plain)
-        memory.wall_rates[:] = plain["wall_rates"]
-        if self.solutes is not None:
-            self.solutes.restore(plain)
-
-    def _given(self, state: Mapping[str, Any]) -> Iterator[Piece]:
-        require_finite(state)
-        yield from of_state(state, (self.n, self.dimension), self.numbers.beads)
+        self._restore(self.comm.bcast(plain, ROOT), self._given(state) if root else ())

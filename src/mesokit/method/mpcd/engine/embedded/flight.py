@@ -151,7 +151,7 @@ def kick_particle(moving, n, step, box, physics, time):
 
 @elementwise
 def opposite(a):
-    """A vector of whole numbers, the other way."""
+    """The opposite of a vector of whole numbers."""
     return "-a[{k}]"
 
 

@@ -7,7 +7,7 @@ from mesokit.errors import RunError
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import lanes_in, share, strip_at, strips_in
 from mesokit.loops.threads import Worker
-from mesokit.method.mpcd.engine.beads.broken_bonds import first_fault
+from mesokit.method.mpcd.engine.beads.interactions import first_fault
 from mesokit.method.mpcd.engine.beads.neighbours import apart
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
@@ -20,7 +20,7 @@ from mesokit.scalar.fixed_point import quanta, total
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
 
-MOST = 2.0**60  # units of energy of one pair: of particles that overlap, it is not told exactly
+MOST = 2.0**60  # units of energy of one pair: of particles that overlap it is not exact
 
 
 def energy_in_fluid(memory: Memory) -> float:

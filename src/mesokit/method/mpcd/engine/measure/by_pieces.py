@@ -121,7 +121,6 @@ class ByPieces:
         return self.readings.seen_at(molecules.ravel(), False)
 
     def _between(self, seen: Observed, links: Integers) -> Floats:
-        """Vectors along links (n, 2) of the beads of each molecule."""
         first = np.arange(0, len(seen.positions), self.beads)[:, None, None]
         pairs = (first + links).reshape(-1, 2)
         return self.readings.separation(seen.positions, seen.images, *pairs.T)

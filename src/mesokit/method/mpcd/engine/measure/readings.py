@@ -21,7 +21,7 @@ AT_ONCE = 2**10  # strips of a thread: sums of the terms of more particles may o
 
 
 class Observed(NamedTuple):
-    """Particles that were looked at, a row for each."""
+    """Readings of some particles, a row for each."""
 
     positions: Floats
     velocities: Floats
@@ -317,6 +317,10 @@ class Readings:
         taken = self.wall_tally.state().items()
         steps = {"wall_steps": np.array(self.wall_steps)}
         return {f"walls/{name}": array.copy() for name, array in taken} | steps
+
+    def wall_rates(self) -> Floats:
+        """Rates of the flow at all pieces of surface."""
+        return self.memory.wall_rates.copy()
 
     def forget_walls(self) -> None:
         """Count anew what surfaces take."""

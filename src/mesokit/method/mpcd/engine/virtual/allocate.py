@@ -76,7 +76,18 @@ def virtual_particles(
             planes = plates.cut_planes(slit, size, corners)
         else:
             planes = cut_planes(solids, numbers.cells, block)
-        per_cell = _per_cell(planes, pieces, threads, entries, d)
+        normals, heights, places, surfaces, where = planes
+        per_cell = CellParticles(
+            normals=np.ascontiguousarray(normals.T).ravel(),
+            heights=heights,
+            places=np.ascontiguousarray(places.T).ravel(),
+            terms=surfaces,
+            pieces=pieces[where].astype(np.int64),
+            work=zeros((threads, ROWS * SCRATCH_ROW)),
+            state=np.zeros((threads, entries, 3 * d + 1)),
+            entry=np.zeros((threads, entries), np.int64),
+            filled=np.zeros(threads, np.int64),
+        )
     blocks = blocks_for(room)
     return VirtualParticles(
         density=density,
@@ -97,19 +108,4 @@ def virtual_particles(
         filled=np.zeros(threads, np.int64),
         per_cell=per_cell,
         seen=() if domain is None else domain.seen(probes),
-    )
-
-
-def _per_cell(planes: Any, pieces: Any, threads: int, entries: int, d: int) -> CellParticles:
-    normals, heights, places, terms, where = planes
-    return CellParticles(
-        normals=np.ascontiguousarray(normals.T).ravel(),
-        heights=heights,
-        places=np.ascontiguousarray(places.T).ravel(),
-        terms=terms,
-        pieces=pieces[where].astype(np.int64),
-        work=zeros((threads, ROWS * SCRATCH_ROW)),
-        state=np.zeros((threads, entries, 3 * d + 1)),
-        entry=np.zeros((threads, entries), np.int64),
-        filled=np.zeros(threads, np.int64),
     )

@@ -23,7 +23,11 @@ from mesokit.method.mpcd.engine.cpu.bounce import body_takes
 from mesokit.method.mpcd.engine.cpu.grid import in_cell
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_WALLS
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale, of_walls
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import asks, many_energy_term, many_tally
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
+    many_energy_term,
+    many_tally,
+    needs_energy,
+)
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_scratch, load_values, store_scratch
 from mesokit.method.mpcd.engine.virtual.gradient import flow_at
 from mesokit.method.mpcd.engine.virtual.particles import MOST
@@ -114,7 +118,7 @@ def count_batch(numbers, counter, work):
 def draw_batch(physics, numbers, counter, work):
     """Thermal velocity of one particle, and energy of all about their mean; -1 where in doubt."""
     zero = physics.zero
-    (m,), asked = physics.masses, asks(physics.energy)
+    (m,), asked = physics.masses, needs_energy(physics.energy)
     spread = math.sqrt(physics.kT / m)
     for i in range(LANES):
         a, b, c, e = words(counter, VIRTUAL_VELOCITY, numbers[i], 0)
@@ -183,7 +187,7 @@ def place_particles(virtual, at, physics, now, sums):
     mass = m * number
     v = added_scaled(u, 1.0 / math.sqrt(float(number)), thermal)
     inner = 0.0
-    if asks(physics.energy):
+    if needs_energy(physics.energy):
         inner = work[INNER * SCRATCH_ROW + i]
         if inner < 0.0:
             inner = gamma_number(float(d * (number - 1)), now.counter, VIRTUAL_NUMBER, at.key)

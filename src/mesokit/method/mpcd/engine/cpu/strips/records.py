@@ -1,4 +1,4 @@
-"""Cells keep records (all numbers of a cell side by side), strips keep rows: the way between them.
+"""Moves numbers between records (all numbers of a cell side by side) and rows of strips.
 
 Four lanes at a time are turned round in vector registers. Written as a loop over single numbers,
 each number would be one store to a cache line of its own, and stores are what limits such a loop.
@@ -122,7 +122,6 @@ def gather_sums(typing_context: Any, sums: Any, start: Any, i: Any, rows: Any, t
 
 
 def _start(context: Any, builder: Any, signature: Any, arguments: Any, k: int) -> Any:
-    """Pointer to the first element of the array that is argument k."""
     array = context.make_array(signature.args[k])(context, builder, arguments[k])
     return array.data
 

@@ -11,7 +11,7 @@ import contextlib
 import time
 import weakref
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,28 +25,15 @@ PATIENCE = 1  # windows after a move that are not looked at
 LEAST = 0.02  # seconds of work: a shorter window is too noisy
 
 
-class Move(NamedTuple):
-    """Borders that moved: after which step, the imbalance that was seen, and the blocks then."""
-
-    step: int
-    imbalance: float
-    blocks: tuple[Block, ...]
-
-
 class Balance:
-    """Times of the work of all ranks, and the moves of borders.
+    """Times of the work of all ranks, and the number of moves of borders.
 
-    Parameters
-    ----------
-    comm : communicator of mpi4py
-        Of all ranks.
-    limit : float
-        Difference of the branches of a node that is too much.
+    `limit` is the relative difference of the branches of a node above which borders move.
     """
 
     def __init__(self, comm: Any, limit: float) -> None:
         self.comm, self.limit = comm, limit
-        self.moves: list[Move] = []
+        self.moves = 0
         self.first = self.last = np.nan  # imbalance of the first and the last window
         self._times, self._earlier = np.zeros(comm.size), np.zeros(0)
         self._pending: list[Any] = []
@@ -77,9 +64,9 @@ class Balance:
         self._earlier = times
         return [earlier, times] if len(earlier) else []
 
-    def moved(self, step: int, blocks: tuple[Block, ...]) -> None:
+    def moved(self) -> None:
         """Note that borders have moved: times of the present window are of the old borders."""
-        self.moves.append(Move(step, float(self.last), blocks))
+        self.moves += 1
         finish_agreement(self._pending)
         self._wait, self._earlier = PATIENCE, np.zeros(0)
 
