@@ -119,7 +119,7 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     cell_energy.energy_term: lambda p, d: (1.0, vec(d)),
     cell_energy.tally: lambda p, d: (1.0, vec(d)),
     cell_energy.untangled: lambda p, d: (WHOLE,),
-    cell_energy.asks: lambda p, d: (),
+    cell_energy.needs_energy: lambda p, d: (),
     cell_energy.many_energy_term: lambda p, d: (1.0,),
     cell_energy.many_tally: lambda p, d: (WHOLE, 1.0),
     rules.contribute: lambda p, d: (COUNTER, (WHOLE, WHOLE), 1.0, vec(d), vec(d)),
