@@ -175,7 +175,7 @@ class Centred:
     """Mixin of shapes that turn about their centre."""
 
     centre: Any
-    per_axis = ("centre",)
+    per_axis: ClassVar[tuple[str, ...]] = ("centre",)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
         return tuple(self.centre)
