@@ -64,6 +64,8 @@ def fill_field(worker, physics, fluid):
 def share_field(worker, fluid):
     """Exchange the sums of cells at the borders of ranks, for gradients in neighbouring cells."""
     barrier(worker)
+    # The first thread sends the sums of own cells that lie in halos of partners (`given`), and
+    # stores those of the cells in its own halo (`mine`): gradients need them before the collision.
     if worker.thread == 0:
         shared, values = fluid.cells.shared, fluid.cells.field.values
         for j in range(len(shared.given)):

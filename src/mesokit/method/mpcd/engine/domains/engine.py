@@ -59,16 +59,7 @@ FAULT_TEXTS = {
 class Ranks(CPU):
     """The part of a fluid in the block of one rank; all ranks call its methods together.
 
-    Parameters
-    ----------
-    case : Case
-        What to simulate; the same on all ranks.
-    threads : int
-        Of this rank.
-    measures : sequence of str
-        As of `CPU`.
-    comm : communicator of mpi4py
-        Of all ranks.
+    Parameters are those of `CPU`, with the threads of this rank, and the communicator (mpi4py).
     """
 
     readings: SharedReadings
