@@ -16,7 +16,9 @@ from mesokit.method.mpcd.engine.measure.readings import Observed, Readings
 from mesokit.method.mpcd.engine.pieces import ROOT, Spread, pieces
 
 
-def gathered(comm: Any, here: NDArray[np.int64], rows: Floats) -> tuple[NDArray[np.int64], Floats]:
+def rows_of_all(
+    comm: Any, here: NDArray[np.int64], rows: Floats
+) -> tuple[NDArray[np.int64], Floats]:
     """Numbers (n,) and rows (n, columns) of all ranks, of which this one has some."""
     words = 1 + rows.shape[1]
     sent = np.concatenate([here[:, None], np.ascontiguousarray(rows).view(np.int64)], axis=1)
@@ -72,7 +74,7 @@ class SharedReadings(Readings):
 
     def together(self, here: NDArray[np.int64], rows: Floats, number: int) -> Floats:
         """Gather rows (number, columns) on all ranks; this one has those with numbers `here`."""
-        numbers, every = gathered(self.comm, here, rows)
+        numbers, every = rows_of_all(self.comm, here, rows)
         out = np.empty((number, rows.shape[1]))
         out[numbers] = every
         return out
@@ -138,7 +140,7 @@ class SharedSolutes(SoluteReadings):
         beads, d = self.state_of, self.shape[1]
         r, v = beads.r.reshape(self.shape), beads.v.reshape(self.shape)
         own = beads.halo.numbers[OWN, : beads.halo.count[OWN]]
-        ids, rows = gathered(self.comm, own, np.concatenate([r[own], v[own]], axis=1))
+        ids, rows = rows_of_all(self.comm, own, np.concatenate([r[own], v[own]], axis=1))
         r[ids], v[ids] = rows[:, :d], rows[:, d:]
         self.known = True
 
