@@ -7,7 +7,7 @@ from numba import njit
 
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
     Column,
-    NotAsked,
+    NotNeeded,
     WithCount,
     tally,
     untangled,
@@ -41,5 +41,5 @@ def test_the_fullest_cell_of_the_fastest_particles():
 
 def test_nothing_is_told_where_nobody_asks():
     plain = njit(lambda energy: untangled(energy, np.int64(7)))
-    assert plain(NotAsked()) == (7, 0.0)
+    assert plain(NotNeeded()) == (7, 0.0)
     assert plain(Column()) == (7, 0.0)

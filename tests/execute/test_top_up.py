@@ -8,7 +8,7 @@ from mesokit import AT, Plates
 from mesokit.loops.threads import Worker
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.engine.cpu.groups import Now
-from mesokit.method.mpcd.engine.virtual.stages import top_up_walls
+from mesokit.method.mpcd.engine.virtual.one_by_one import top_up_walls
 from mesokit.scalar.fixed_point import ROUNDER_BITS
 from mesokit.scalar.random import Counter
 from tests.helpers.small_fluids import make_case

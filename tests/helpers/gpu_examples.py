@@ -22,12 +22,12 @@ from mesokit import (
 from mesokit.case import box as boxes
 from mesokit.case.box import Box
 from mesokit.case.shear import protocol as histories
-from mesokit.geometry import cut
+from mesokit.geometry import protocol
 from mesokit.geometry import protocol as solids
+from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.solids import contact, virtual_particles  # noqa: F401  what solids in tables answer
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
-from mesokit.geometry.solids.none import Nothing
 from mesokit.method.flock.engine.move import flown
 from mesokit.method.flock.noise import RULES as NOISES
 from mesokit.method.flock.noise import protocol as birds
@@ -68,7 +68,7 @@ WHOLE, WORD = np.int64(1), np.uint64(1)
 COUNTER = random.Counter(WORD, WORD)
 HIT = solids.Chance(WORD, WORD, WHOLE, WHOLE, 1.0)
 MOST_SUMS, MOST_COEFFICIENTS = 18, 12
-ENERGIES = (cell_energy.NotAsked(), cell_energy.Column(), cell_energy.WithCount(1.0))
+ENERGIES = (cell_energy.NotNeeded(), cell_energy.Column(), cell_energy.WithCount(1.0))
 
 
 TABLE = tempfile.NamedTemporaryFile("w", suffix=".txt")  # noqa: SIM115  as long as the tests
@@ -119,7 +119,7 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     cell_energy.energy_term: lambda p, d: (1.0, vec(d)),
     cell_energy.tally: lambda p, d: (1.0, vec(d)),
     cell_energy.untangled: lambda p, d: (WHOLE,),
-    cell_energy.asks: lambda p, d: (),
+    cell_energy.needs_energy: lambda p, d: (),
     cell_energy.many_energy_term: lambda p, d: (1.0,),
     cell_energy.many_tally: lambda p, d: (WHOLE, 1.0),
     rules.contribute: lambda p, d: (COUNTER, (WHOLE, WHOLE), 1.0, vec(d), vec(d)),
@@ -155,12 +155,12 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     solids.rebound: lambda p, d: (hit(p), vec(d), vec(d), HIT),
     solids.settled: lambda p, d: (vec(d),),
     solids.facing: lambda p, d: (1.0, vec(d)),
-    cut.behind: lambda p, d: (vec(d),),
-    cut.surface_flow: lambda p, d: (WHOLE, vec(d)),
-    cut.height: lambda p, d: (WHOLE, vec(d)),
-    cut.roomy: lambda p, d: (vec(d),),
-    cut.home: lambda p, d: (vec(d),),
-    cut.grip: lambda p, d: (WHOLE, vec(d)),
+    protocol.nearest_surface: lambda p, d: (vec(d),),
+    protocol.surface_flow: lambda p, d: (WHOLE, vec(d)),
+    protocol.distance_above: lambda p, d: (WHOLE, vec(d)),
+    protocol.is_clear_cell: lambda p, d: (vec(d),),
+    protocol.unit_cell: lambda p, d: (vec(d),),
+    protocol.surface_and_lever: lambda p, d: (WHOLE, vec(d)),
     contacts.normal_force: lambda p, d: (1.0, contacts.Closing(1.0, 1.0, 0.1), 1.0, 1.0),
     contacts.normal_energy: lambda p, d: (1.0, 1.0),
     birds.counted: lambda p, d: (),
@@ -212,7 +212,7 @@ def physics(d: int, **parts: Any) -> Physics:
         "field": NoForce().kernel((8,) * d),
         "solid": Nothing(),
         "masses": (1.0,),
-        "energy": cell_energy.NotAsked(),
+        "energy": cell_energy.NotNeeded(),
         "timestep": 0.1,
         "kT": 1.0,
         "molecule": (),

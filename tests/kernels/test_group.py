@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit, typeof
 
-from mesokit.kernels.group import Group, by_address, kind_of, packed, replaced, writer
+from mesokit.kernels.group import Group, by_address, replaced, writer
 from mesokit.kernels.kernel import kernel
+from mesokit.kernels.packing import kind_of, packed
 from mesokit.scalar.jit import seldom
 
 

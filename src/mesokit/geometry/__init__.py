@@ -1,1 +1,1 @@
-"""Walls: shapes of solids, and what their surfaces do."""
+"""Walls: shapes of solids, and rules of their surfaces."""

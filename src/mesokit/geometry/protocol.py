@@ -1,7 +1,8 @@
-"""What a solid answers: whether a flight touches it, where, and what its surface does there.
+"""Functions that each kind of solid implements: hits of flights, and depths of virtual particles.
 
 The first argument is the solid's NamedTuple of parameters; its class picks the implementation. A
-flight starts at r with velocity v inside the fluid and has the constant acceleration a.
+flight starts at r with velocity v inside the fluid and has the constant acceleration a. A term is
+the number of one surface of the solid.
 """
 
 from typing import NamedTuple
@@ -12,18 +13,13 @@ from mesokit.scalar.jit import generic
 
 
 class Chance(NamedTuple):
-    """What a random reflection depends on: the random stream, particle, hit, and kT over mass."""
+    """Random stream, particle, hit, and kT over mass, on which a random reflection depends."""
 
     seed: np.uint64
     step: np.uint64
     number: int
     hit: int
     kT_over_m: float
-
-
-@generic
-def across(solid):
-    """The axis that plates close, as a literal."""
 
 
 @generic
@@ -42,7 +38,7 @@ def touches(solid, clear, r, v, a, time):
 
 @generic
 def leaps(solid, displacement):
-    """Whether a way is longer than a stride, of solids in tables: `clear` may not be so large."""
+    """Whether a displacement is longer than a stride, for solids in tables: `clear` may fail."""
 
 
 @generic
@@ -100,3 +96,53 @@ def settled(solid, r):
 def facing(solid, away, r):
     """Distance of r from the nearest surface, the normal out of it, its number, and r from its
     pivot; the first is at least `away` where nothing is nearer."""
+
+
+# For virtual particles: r is an image that `homed` gives.
+
+
+@generic
+def nearest_surface(solid, r):
+    """Clearance of r, which is negative in solid, the term there, and the nearest place on it.
+
+    Where the surface holds no virtual particles, the clearance is not negative either.
+    """
+
+
+@generic
+def surface_flow(solid, term, r):
+    """Velocity of the surface of a term at r."""
+
+
+@generic
+def distance_above(solid, term, r):
+    """Distance of r from the surface of a term, positive in the fluid."""
+
+
+@generic
+def is_clear_cell(solid, r):
+    """Whether the unit cell about r is surely free of solid."""
+
+
+@generic
+def unit_cell(solid, r):
+    """Number of the unit cell of the box that holds r."""
+
+
+@generic
+def surface_and_lever(solid, term, r):
+    """The number by which momentum is kept for the surface of a term, and r from its pivot."""
+
+
+class Nothing(NamedTuple):
+    """No solid: the whole box is fluid."""
+
+
+@exposed.register(Nothing)
+def _(solid):
+    return False
+
+
+@touches.register(Nothing)
+def _(solid, clear, r, v, a, time):
+    return False

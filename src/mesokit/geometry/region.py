@@ -44,7 +44,7 @@ class Part(NamedTuple):
     samples: NDArray[np.float64] | None = None
 
     def moved(self, by: Vector) -> Part:
-        """The same elsewhere."""
+        """The part after a displacement."""
         x, y, z, *others = self.numbers
         dx, dy, dz = _three(by)
         return Part(self.kind, (x + dx, y + dy, z + dz, *others), self.sign, self.samples)
@@ -64,12 +64,12 @@ Region = tuple[Term, ...]
 
 
 def union(*regions: Region | Iterable[Region]) -> Region:
-    """What is in any of the regions, given as a list or one by one."""
+    """The union of regions, given as a list or one by one."""
     return tuple(term for region in _listed(regions) for term in region)
 
 
 def intersection(*regions: Region | Iterable[Region]) -> Region:
-    """What is in all of the regions, given as a list or one by one."""
+    """The common part of regions, given as a list or one by one."""
     return tuple(tuple(itertools.chain(*terms)) for terms in itertools.product(*_listed(regions)))
 
 
@@ -81,7 +81,7 @@ def _listed(given: tuple[Any, ...]) -> Iterable[Region]:
 
 
 def complement(region: Region) -> Region:
-    """What is not in the region."""
+    """The space outside of a region."""
     return tuple(
         tuple(part._replace(sign=-part.sign) for part in parts)
         for parts in itertools.product(*region)
@@ -89,7 +89,7 @@ def complement(region: Region) -> Region:
 
 
 def moved(region: Region, by: Vector) -> Region:
-    """The same elsewhere."""
+    """The region after a displacement."""
     return tuple(tuple(part.moved(by) for part in term) for term in region)
 
 

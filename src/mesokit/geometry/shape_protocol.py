@@ -1,11 +1,9 @@
-"""What all walls and shapes of solids share."""
-
-from __future__ import annotations
+"""Base classes of walls and shapes of solids, and the bodies of which solids consist."""
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -20,9 +18,6 @@ from mesokit.geometry.surface import Surface
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import seldom
 from mesokit.scalar.pointer import address
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 
 def reaches(term: Term, room: Room) -> bool:
@@ -74,7 +69,7 @@ def pieces_of(region: Region, pivot: Sequence[float], room: Room) -> list[Piece]
 
 
 class Body(NamedTuple):
-    """What has one surface and one force on it; the rate of rotation is a vector of three."""
+    """A solid with one surface and one force on it; the rate of rotation is a vector of three."""
 
     name: str
     surface: Surface
@@ -86,8 +81,9 @@ class Body(NamedTuple):
 @family("shape", "shape", "mesokit.shape")
 @component
 class Wall(ABC):
-    """What the fluid cannot enter."""
+    """A solid, or several, that the fluid cannot enter."""
 
+    per_axis: ClassVar[tuple[str, ...]] = ()  # keys with one number for each axis
     dimensions: ClassVar[tuple[int, ...]] = (2, 3)
     virtual: Virtual = option(default="extrapolate", doc=VIRTUAL, kw_only=True)
     name: str | None = option(
@@ -108,7 +104,7 @@ class Wall(ABC):
 
     @abstractmethod
     def bodies(self, room: Room, label: str) -> list[Body]:
-        """What it is made of: a body for each surface, named after it or `label`."""
+        """Its bodies, one for each surface, named after it or `label`."""
 
     def period(self, room: Room) -> tuple[float, ...]:
         """Lengths after which it is the same again: those of the box unless it repeats itself."""
@@ -116,7 +112,7 @@ class Wall(ABC):
 
     def vectors(self) -> dict[str, Any]:
         """Its parameters that have one number for each axis, by key."""
-        return {}
+        return {key: v for key in self.per_axis if (v := getattr(self, key)) is not None}
 
 
 def closed_axes(walls: Iterable[Wall]) -> set[Axis]:
@@ -126,7 +122,7 @@ def closed_axes(walls: Iterable[Wall]) -> set[Axis]:
 
 @component
 class Shape(Wall):
-    """A solid: where it is, what its surface does, and on which side of it the fluid is."""
+    """A solid: its place, its surface, and the side of it on which the fluid is."""
 
     fluid: Literal["outside", "inside"] = option(
         default="outside", doc="side of the surface on which the fluid is", kw_only=True
@@ -139,7 +135,7 @@ class Shape(Wall):
 
     @abstractmethod
     def body(self, room: Room) -> Region:
-        """What lies within the surface."""
+        """The region within the surface."""
 
     @abstractmethod
     def pivot(self, room: Room) -> tuple[float, ...]:
@@ -157,7 +153,6 @@ class Shape(Wall):
         return [Piece(term, self.pivot(room)) for term in complement(everywhere)]
 
     def surfaces(self) -> dict[str, Surface]:
-        """Its surface, by key."""
         return {"surface": self.surface}
 
     def bodies(self, room: Room, label: str) -> list[Body]:
@@ -176,7 +171,24 @@ class Shape(Wall):
         return (0.0, 0.0, 1.0)
 
 
-# What other shapes can be made of. One family lies within the other.
+class Centred:
+    """Mixin of shapes that turn about their centre."""
+
+    centre: Any
+    per_axis: ClassVar[tuple[str, ...]] = ("centre",)
+
+    def pivot(self, room: Room) -> tuple[float, ...]:
+        return tuple(self.centre)
+
+
+def positive(lengths: tuple[float, ...] | None) -> tuple[float, ...] | None:
+    """Lengths as they are. Raises ValueError if one is not positive."""
+    if lengths is not None and not all(x > 0 for x in lengths):
+        raise ValueError("expected positive lengths")
+    return lengths
+
+
+# Families of shapes of which others can be made. One lies within the other.
 
 
 @family("shape to repeat", "shape", "mesokit.shape")

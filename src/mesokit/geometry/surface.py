@@ -1,4 +1,4 @@
-"""What a wall does to the particles that hit it."""
+"""Rules by which walls reflect particles."""
 
 from typing import Any, Literal
 

@@ -16,7 +16,7 @@ CONTACT = ("temperature", "tangential", "restitution", "friction", *VIBRATION)
 
 
 class Walls(NamedTuple):
-    """What a method takes of walls beside their shapes; all else that a wall says is refused.
+    """Keys of walls, beside their shapes, that a method takes; all others are refused.
 
     rules: of surfaces. moving, turning: whether surfaces may have a velocity and a rotation.
     virtual: whether virtual particles fill solids. contact: keys of `surface.contact`.
@@ -29,7 +29,7 @@ class Walls(NamedTuple):
     contact: tuple[str, ...] = ()
 
     def problems(self, case: Case) -> Iterator[str]:
-        """What is wrong with the walls of a case, key first."""
+        """Faults of the walls of a case, key first."""
         yield from _shapes(case)
         for i, wall in enumerate(case.walls):
             if wall.virtual != "extrapolate" and not self.virtual:
@@ -37,7 +37,14 @@ class Walls(NamedTuple):
         for key, surface, wall in surfaces(case):
             yield from self._surface(key, surface, case)
             if isinstance(wall, Plates):
-                yield from _moving_plate(key, surface, wall.axis)
+                if surface.rotation is not None:
+                    yield f"{key}.rotation = {show(surface.rotation)}: a plate does not turn"
+                velocity = surface.velocity or ()
+                if any(velocity["xyz".index(wall.axis) :][:1]):
+                    yield (
+                        f"{key}.velocity = {show(list(velocity))}: a plate across {wall.axis} "
+                        f"moves only along itself; expected 0 for {wall.axis}"
+                    )
 
     def _surface(self, key: str, surface: Surface, case: Case) -> Iterator[str]:
         if surface.rule not in self.rules:
@@ -117,7 +124,8 @@ def _shapes(case: Case) -> Iterator[str]:
         if d not in wall.dimensions:
             from mesokit.geometry.shape import SHAPES
 
-            known = [_name(shape) for shape in SHAPES if d in getattr(shape, "dimensions", ())]
+            usable = [shape for shape in SHAPES if d in getattr(shape, "dimensions", ())]
+            known = [found[1] for shape in usable if (found := tag_of(shape))]
             yield f"{key}.shape = {show(name_of(wall))}: not in {d}D; expected {one_of(known)}"
         for axis in wall.closed_axes:
             if axis not in case.box.axes:
@@ -131,26 +139,8 @@ def _shapes(case: Case) -> Iterator[str]:
         named[label] = i + 1
 
 
-def _name(shape: type) -> str:
-    """The name of a shape in a case file."""
-    found = tag_of(shape)
-    assert found is not None
-    return found[1]
-
-
-def _moving_plate(key: str, surface: Surface, axis: str) -> Iterator[str]:
-    velocity = surface.velocity or ()
-    if surface.rotation is not None:
-        yield f"{key}.rotation = {show(surface.rotation)}: a plate does not turn"
-    if any(velocity["xyz".index(axis) :][:1]):
-        yield (
-            f"{key}.velocity = {show(list(velocity))}: a plate across {axis} moves only along "
-            f"itself; expected 0 for {axis}"
-        )
-
-
 def _absent(wall: Any, box: tuple[int, ...]) -> str:
-    """What is wrong with a solid of which no surface is in the box, key first."""
+    """The fault of a solid of which no surface is in the box, key first."""
     known = ("radius", "size", "width", "parts", "of", "file")
     inside = wall.fluid == "inside"
     keys = known if inside else ("file", "parts", "of", *wall.vectors(), *known)

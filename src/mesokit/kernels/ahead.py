@@ -45,22 +45,18 @@ def begin(kernel: Any, compile: Callable[[], Any]) -> None:
 
 def _can_copy() -> bool:
     """Whether a child would have a core of its own, and find no lock of another thread."""
-    if threading.current_thread() is not threading.main_thread():
-        return False
-    if not all(one.daemon for one in threading.enumerate() if one is not threading.main_thread()):
-        return False
-    return _has_a_core()
+    main = threading.main_thread()
+    alone = all(one.daemon for one in threading.enumerate() if one is not main)
+    return threading.current_thread() is main and alone and _has_a_core()
 
 
 def _has_a_core() -> bool:
-    """Whether another process of this user would have a core of its own."""
     if sys.platform != "linux" or "mpi4py.MPI" in sys.modules:
         return False
     return len(os.sched_getaffinity(0)) > 1
 
 
 def _compile(compile: Callable[[], Any], reported: int) -> None:
-    """The whole life of the child."""
     try:
         for number in signal.SIGINT, signal.SIGTERM, signal.SIGALRM:
             signal.signal(number, signal.SIG_DFL)
@@ -93,7 +89,6 @@ def end(kernel: Any) -> None:
 
 
 def _stop(child: int) -> None:
-    """End a child, which has reported or is not needed any more."""
     counts.compiles_ahead -= 1
     with contextlib.suppress(OSError):  # the user ignores SIGCHLD, or has waited for it
         os.kill(child, signal.SIGKILL)

@@ -9,13 +9,11 @@ them out of loops, but for the fields that a class declares as changing.
 
 import functools
 import hashlib
-import struct
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-import numpy as np
 from llvmlite import ir
-from numba import typeof, types
+from numba import types
 from numba.core import cgutils
 from numba.core.errors import TypingError
 from numba.core.typing import signature
@@ -28,14 +26,12 @@ from numba.extending import (
     lower_getattr_generic,
     models,
     register_model,
-    typeof_impl,
     unbox,
 )
 from numba.np.arrayobj import populate_array
 
 _WORD, _BYTES = ir.IntType(64), ir.IntType(8).as_pointer()
-OWNS = 4  # the bit of an array's flags that says that the memory is its own
-_CHANGING: dict[type, tuple[str, ...]] = {}  # classes that are always packed, and what changes
+CHANGING: dict[type, tuple[str, ...]] = {}  # classes that are always packed, and what changes
 _IN_WORDS: set[type] = set()  # classes of which each field takes one word
 
 
@@ -47,7 +43,7 @@ def by_address(*changing: str, in_words: bool = False) -> Callable[[type], type]
     """
 
     def declare(kind: type) -> type:
-        _CHANGING[kind] = changing
+        CHANGING[kind] = changing
         if in_words:
             _IN_WORDS.add(kind)
         return kind
@@ -58,20 +54,20 @@ def by_address(*changing: str, in_words: bool = False) -> Callable[[type], type]
 class Group(types.Type):
     """The type of a packed group: its class, and names and types of its fields."""
 
-    def __init__(self, kind: type, fields: tuple[str, ...], inner: tuple[Any, ...]) -> None:
-        self.instance_class, self.fields, self.types = kind, fields, inner
-        self.changing, self.in_words = _CHANGING.get(kind, ()), kind in _IN_WORDS
+    def __init__(self, kind: Any, inner: tuple[Any, ...]) -> None:
+        self.instance_class, self.fields, self.types = kind, kind._fields, inner
+        self.changing, self.in_words = CHANGING.get(kind, ()), kind in _IN_WORDS
         self.offsets, self.words = {}, 0
-        for name, one in zip(fields, inner, strict=True):
+        for name, one in zip(self.fields, inner, strict=True):
             self.offsets[name] = self.words
             self.words += 1 if self.in_words else _words_of(one)
-        text = f"{kind.__module__}.{kind.__qualname__} {fields} {inner} {self.changing}"
+        text = f"{kind.__module__}.{kind.__qualname__} {self.fields} {inner} {self.changing}"
         word = hashlib.sha256(text.encode()).hexdigest()[:12]
         super().__init__(name=f"{kind.__name__}.{word}")
 
     @property
     def key(self) -> Any:
-        """What tells types apart: classes of one name can be several."""
+        """Class and types of fields, as several classes may have one name."""
         return self.instance_class, self.types
 
     def __len__(self) -> int:
@@ -81,25 +77,20 @@ class Group(types.Type):
 register_model(Group)(models.OpaqueModel)
 
 
-class Hidden(types.Type):
-    """The type of a field that a stage does not look at."""
+_HIDDEN = types.Opaque("hidden")  # the type of a field that a stage does not look at
 
 
-_HIDDEN = Hidden("hidden")
-
-
-def _items(kind: Any) -> Sequence[Any]:
+def items_of(kind: Any) -> Sequence[Any]:
     """Types of the elements of a tuple."""
     uniform = isinstance(kind, (types.UniTuple, types.NamedUniTuple))
     return [kind.dtype] * kind.count if uniform else kind.types
 
 
 def _words_of(kind: Any) -> int:
-    """How many words of 64 bits a value takes."""
     if isinstance(kind, Group):
         return kind.words
     if isinstance(kind, types.BaseTuple):
-        return sum(map(_words_of, _items(kind)))
+        return sum(map(_words_of, items_of(kind)))
     if isinstance(kind, types.Array):
         return 1 + kind.ndim * (1 if kind.layout == "C" else 2)
     if isinstance(kind, (types.Integer, types.Float, types.Boolean)):
@@ -107,171 +98,10 @@ def _words_of(kind: Any) -> int:
     raise TypeError(f"a group cannot hold {kind}")
 
 
-# --- packing --------------------------------------------------------------------------------------
-
-
-def _is_packed(value: Any) -> bool:
-    """Whether a value holds arrays, or is of a class that is always packed."""
-    if isinstance(value, np.ndarray) or type(value) in _CHANGING:
-        return True
-    return isinstance(value, tuple) and any(map(_is_packed, value))
-
-
-def kind_of(value: Any) -> Any:
-    """The numba type of a value as kernels take it."""
-    if isinstance(value, tuple) and _is_packed(value):
-        inner = tuple(map(kind_of, value))
-        if hasattr(value, "_fields"):
-            return _group(type(value), inner)
-        return types.Tuple(inner)
-    if type(value) is np.ndarray:
-        key = value.dtype, value.ndim, value.flags.num & ~OWNS
-        if key not in _arrays:
-            _arrays[key] = typeof(value)
-        return _arrays[key]
-    return typeof(value)
-
-
-_arrays: dict[Any, Any] = {}  # types of arrays: numba takes long to find them
-
-
 @functools.cache
-def _group(kind: type, inner: tuple[Any, ...]) -> Group:
-    return Group(kind, kind._fields, inner)  # type: ignore[attr-defined]
-
-
-class Packed:
-    """A group in memory, with the fields of the group that it was made of.
-
-    Examples
-    --------
-    >>> from typing import NamedTuple
-    >>> class Row(NamedTuple):
-    ...     scale: float
-    ...     values: np.ndarray
-    >>> row = packed(Row(2.0, np.ones(3)))
-    >>> row.scale, len(row.memory)  # the scale; address and length of the array
-    (2.0, 3)
-    """
-
-    def __init__(self, value: Any, kind: Any = None) -> None:
-        self.value, self._numba_type_ = value, kind or kind_of(value)
-        self._apart: list[Any] = []  # what fields of one word are addresses of
-        self.memory = _in_memory(value, self._numba_type_, self._apart)
-        self.address = self.memory.ctypes.data
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.value, name)
-
-
-def _in_memory(value: Any, kind: Any, apart: list[Any]) -> Any:
-    """The words of a value; what fields of one word are addresses of is added to `apart`."""
-    numbers: list[Any] = []
-    formats: list[str] = []
-    _flatten(value, kind, numbers, formats, apart)
-    words = struct.pack("=" + "".join(formats), *numbers)
-    return np.frombuffer(bytearray(words or bytes(8)), np.int64)
-
-
-def _flatten(
-    value: Any, kind: Any, numbers: list[Any], formats: list[str], apart: list[Any]
-) -> None:
-    """Add the words of a value, and the letters of `struct` for them."""
-    if isinstance(kind, Group):
-        for one, inner in zip(value, kind.types, strict=True):
-            if kind.in_words and not isinstance(inner, types.Number):
-                apart.append(_in_memory(one, inner, apart))
-                numbers.append(apart[-1].ctypes.data)
-                formats.append("q")
-            else:
-                _flatten(one, inner, numbers, formats, apart)
-    elif isinstance(kind, types.BaseTuple):
-        for one, inner in zip(value, _items(kind), strict=True):
-            _flatten(one, inner, numbers, formats, apart)
-    elif isinstance(kind, types.Array):
-        words = (value.ctypes.data, *value.shape, *(value.strides if kind.layout != "C" else ()))
-        numbers.extend(words)
-        formats.append("q" * len(words))
-    else:
-        numbers.append(value)
-        signed = getattr(kind, "signed", True)
-        formats.append("d" if isinstance(kind, types.Float) else "q" if signed else "Q")
-
-
-def packed(value: Any) -> Any:
-    """A group as kernels take it; other values stay as they are."""
-    return Packed(value) if hasattr(value, "_fields") and _is_packed(value) else value
-
-
-def all_packed(values: Iterable[Any]) -> tuple[Any, ...]:
-    """Arguments of a kernel, their groups packed."""
-    return tuple(packed(value) for value in values)
-
-
-class Packing:
-    """Groups of one owner, as kernels take them: packed anew only where one is made of others.
-
-    The owner keeps it, so that no array outlives its owner.
-
-    Examples
-    --------
-    >>> from typing import NamedTuple
-    >>> class Row(NamedTuple):
-    ...     scale: float
-    ...     values: np.ndarray
-    >>> packing, values = Packing(), np.ones(3)
-    >>> [first] = packing(Row(2.0, values))
-    >>> packing(Row(2.0, values))[0] is first, packing(Row(3.0, values))[0] is first
-    (True, False)
-    """
-
-    def __init__(self) -> None:
-        self._known: dict[type, Packed] = {}
-
-    def __call__(self, *values: Any) -> tuple[Any, ...]:
-        return tuple(map(self._one, values))
-
-    def _one(self, value: Any) -> Any:
-        known = self._known.get(type(value))
-        if known is not None and _is_same(known.value, value):
-            return known
-        if known is not None and _is_alike(known.value, value):
-            made = Packed(value, known._numba_type_)
-        else:
-            made = packed(value)
-        if isinstance(made, Packed):
-            self._known[type(value)] = made
-        return made
-
-
-def _is_same(one: Any, other: Any) -> bool:
-    """Whether two values hold the same arrays and equal numbers; of groups that kernels change,
-    whether they are one."""
-    if one is other:
-        return True
-    if type(one) is not type(other) or isinstance(one, np.ndarray) or _CHANGING.get(type(one)):
-        return False
-    if isinstance(one, tuple):
-        return len(one) == len(other) and all(map(_is_same, one, other))
-    return bool(one == other)
-
-
-def _is_alike(one: Any, other: Any) -> bool:
-    """Whether two values have the same type in compiled code: much faster than to find that."""
-    if type(one) is not type(other):
-        return False
-    if isinstance(one, np.ndarray):
-        if one.dtype != other.dtype or one.ndim != other.ndim:
-            return False
-        return not (one.flags.num ^ other.flags.num) & ~OWNS
-    if isinstance(one, tuple):
-        return len(one) == len(other) and all(map(_is_alike, one, other))
-    return True
-
-
-@typeof_impl.register(Packed)
-def _(value: Packed, context: Any) -> Any:
-    return value._numba_type_
+def group_of(kind: type, inner: tuple[Any, ...]) -> Group:
+    """The type of groups of a class with these types of fields."""
+    return Group(kind, inner)
 
 
 @unbox(Group)
@@ -280,9 +110,6 @@ def _unbox(kind: Group, thing: Any, context: Any) -> NativeValue:
     value = context.pyapi.long_as_longlong(word)
     context.pyapi.decref(word)
     return NativeValue(context.builder.inttoptr(value, _BYTES))
-
-
-# --- reading and writing in compiled code ---------------------------------------------------------
 
 
 @infer_getattr
@@ -298,7 +125,7 @@ class _Field(AttributeTemplate):
 
 @infer_global(len)
 class _Length(AbstractTemplate):
-    """The number of fields, as of the NamedTuple: `len(beads) > 0` asks whether there are any."""
+    """The number of fields, as of the NamedTuple: `len(beads) > 0` is true if there are any."""
 
     def generic(self, given: Any, named: Any) -> Any:
         return signature(types.intp, *given) if isinstance(given[0], Group) else None
@@ -319,7 +146,6 @@ def _load_field(context: Any, builder: Any, kind: Group, value: Any, name: str) 
 
 
 def _place(builder: Any, base: Any, at: int, element: Any) -> Any:
-    """A pointer to a word of a group."""
     place = builder.gep(base, [ir.Constant(_WORD, 8 * at)])
     return builder.bitcast(place, element.as_pointer())
 
@@ -337,7 +163,7 @@ def _load(context: Any, builder: Any, base: Any, at: int, kind: Any, fixed: bool
         return builder.gep(base, [ir.Constant(_WORD, 8 * at)])
     if isinstance(kind, types.BaseTuple):
         items = []
-        for item in _items(kind):
+        for item in items_of(kind):
             items.append(_load(context, builder, base, at, item, fixed))
             at += _words_of(item)
         return context.make_tuple(builder, kind, items)
@@ -391,7 +217,7 @@ def without(*names: str) -> Any:
         if isinstance(group, Group):
             pairs = zip(group.fields, group.types, strict=True)
             inner = tuple(_HIDDEN if name in names else one for name, one in pairs)
-            kind = _group(group.instance_class, inner)
+            kind = group_of(group.instance_class, inner)
         return kind(group), lambda context, builder, signature, arguments: arguments[0]
 
     return intrinsic(hide)
@@ -410,7 +236,7 @@ def replaced(name: str) -> Any:
             return group(group, value), lambda context, builder, kinds, given: given[0]
         place = group.fields.index(name)
         inner = (*group.types[:place], _stored(value), *group.types[place + 1 :])
-        kind = _group(group.instance_class, inner)
+        kind = group_of(group.instance_class, inner)
 
         def generate(context: Any, builder: Any, kinds: Any, given: Any) -> Any:
             held = _room(builder, _words_of(value))
@@ -433,14 +259,13 @@ def _stored(kind: Any) -> Any:
     """The type of a value of compiled code once it lies in a group."""
     if not isinstance(kind, types.BaseTuple):
         return kind
-    inner = tuple(map(_stored, _items(kind)))
+    inner = tuple(map(_stored, items_of(kind)))
     holds_arrays = any(isinstance(one, (Group, types.Array)) for one in inner)
     named = getattr(kind, "instance_class", None)
-    return _group(named, inner) if named is not None and holds_arrays else kind
+    return group_of(named, inner) if named is not None and holds_arrays else kind
 
 
 def _room(builder: Any, words: int) -> Any:
-    """Memory of the function that is compiled."""
     room = cgutils.alloca_once(builder, ir.ArrayType(_WORD, max(1, words)))
     return builder.bitcast(room, _BYTES)
 
@@ -453,7 +278,7 @@ def _store(context: Any, builder: Any, base: Any, at: int, kind: Any, value: Any
             builder.store(found, _place(builder, base, at + word, _WORD), align=8)
         return at + kind.words
     if isinstance(kind, types.BaseTuple):
-        for place, inner in enumerate(_items(kind)):
+        for place, inner in enumerate(items_of(kind)):
             item = builder.extract_value(value, place)
             at = _store(context, builder, base, at, inner, item)
         return at
@@ -461,10 +286,9 @@ def _store(context: Any, builder: Any, base: Any, at: int, kind: Any, value: Any
         array = context.make_array(kind)(context, builder, value)
         words = [builder.ptrtoint(array.data, _WORD), *cgutils.unpack_tuple(builder, array.shape)]
         words += cgutils.unpack_tuple(builder, array.strides) if kind.layout != "C" else []
-        for word in words:
-            builder.store(word, _place(builder, base, at, _WORD), align=8)
-            at += 1
-        return at
+        for place, word in enumerate(words, at):
+            builder.store(word, _place(builder, base, place, _WORD), align=8)
+        return at + len(words)
     wide = types.float64 if isinstance(kind, types.Float) else types.int64
     element = context.get_data_type(wide)
     found = context.cast(builder, value, kind, wide)
@@ -484,9 +308,8 @@ def writer(name: str) -> Any:
 
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             kind = signature.args[0]
-            builder.store(
-                arguments[1], _place(builder, arguments[0], kind.offsets[name], _WORD), align=8
-            )
+            place = _place(builder, arguments[0], kind.offsets[name], _WORD)
+            builder.store(arguments[1], place, align=8)
             return context.get_dummy_value()
 
         return types.void(group, types.int64), generate

@@ -39,9 +39,8 @@ class Counts:
 
     def add_made(self, other: Counts) -> None:
         """Count what another process made for this one."""
-        self.parts_made += other.parts_made
-        self.stages_made += other.stages_made
-        self.kernels_made += other.kernels_made
+        for name in ("parts_made", "stages_made", "kernels_made"):
+            setattr(self, name, getattr(self, name) + getattr(other, name))
         self.reasons.update(other.reasons)
 
 
@@ -50,21 +49,12 @@ counts = Counts()
 
 @functools.cache
 def versions() -> str:
-    """What else machine code depends on: a word that is part of every key."""
-    names = (
-        "made_of.py",
-        "later.py",
-        "library.py",
-        "part.py",
-        "group.py",
-        "kernel.py",
-        "../scalar/jit.py",
-    )
-    sources = "".join((HERE / name).read_text(encoding="utf-8") for name in names)
-    options = [str(getattr(config, name)) for name in
-               ("OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "BOUNDSCHECK", "DEBUGINFO_DEFAULT",
-                "LLVM_REFPRUNE_PASS")]  # fmt: skip
-    return digest(" ".join([era(), sources, *options]))
+    """A word, part of every key, for all else that machine code depends on."""
+    names = ["made_of", "later", "library", "part", "group", "packing", "kernel", "../scalar/jit"]
+    sources = "".join((HERE / f"{name}.py").read_text(encoding="utf-8") for name in names)
+    options = "OPT LOOP_VECTORIZE SLP_VECTORIZE BOUNDSCHECK DEBUGINFO_DEFAULT LLVM_REFPRUNE_PASS"
+    settings = [str(getattr(config, option)) for option in options.split()]
+    return digest(" ".join([era(), sources, *settings]))
 
 
 def version_line() -> str:

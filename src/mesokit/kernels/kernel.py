@@ -8,6 +8,7 @@ import contextlib
 import gc
 import hashlib
 import inspect
+import itertools
 import pickle
 from collections.abc import Callable
 from pathlib import Path
@@ -18,10 +19,10 @@ from numba import njit, typeof
 from numba.core.registry import CPUDispatcher, cpu_target
 
 from mesokit.kernels import ahead
-from mesokit.kernels.group import all_packed
 from mesokit.kernels.kept import counts, kept, versions
 from mesokit.kernels.library import machine_code, make_ready, needs_below, processor, stages_of
 from mesokit.kernels.made_of import Unknown, code_of, describe_type, digest
+from mesokit.kernels.packing import all_packed
 from mesokit.kernels.part import as_bytes, part, result_of
 from mesokit.kernels.store import Code, Entry
 
@@ -44,14 +45,6 @@ def taken(folder: str, name: str) -> BaseFileLock | None:
     return lock
 
 
-def released(lock: BaseFileLock | None) -> None:
-    """Let other processes go on."""
-    if lock is not None:
-        lock.release()
-        with contextlib.suppress(OSError):  # a process that waits has it open
-            Path(lock.lock_file).unlink()
-
-
 _used: set[str] | None = set()  # lines of all kernels of this process
 _words: dict[tuple[str, ...], str] = {}  # the hash in such a line, by the rest of it
 
@@ -71,12 +64,6 @@ def _note_used(needs: frozenset[str] | None) -> None:
 def _split(need: str) -> tuple[tuple[str, ...], str]:
     what, place, word, *more = need.split(" ")
     return (what, place, *more), word
-
-
-def _is_of_another(needs: frozenset[str]) -> bool:
-    """Whether this process has code of something that was defined anew since: names in machine code
-    do not tell one from the other."""
-    return any(_words.get(rest, word) != word for rest, word in map(_split, needs))
 
 
 def inner(function: Callable) -> Any:
@@ -129,7 +116,7 @@ class _MachineCode:
 
     def __init__(self, function: Callable) -> None:
         self.function = function
-        self._turn: Any = None
+        self._turn: BaseFileLock | None = None
 
     def load_overload(self, signature: Any, target: Any) -> Any:
         """The kernel for these types; None if there is none, and this process is to compile it."""
@@ -153,7 +140,9 @@ class _MachineCode:
     def end_turn(self) -> None:
         """Let other processes look for what was compiled here."""
         if self._turn is not None:
-            released(self._turn)
+            self._turn.release()
+            with contextlib.suppress(OSError):  # a process that waits has it open
+                Path(self._turn.lock_file).unlink()
             self._turn = None
             kept().note_used()
 
@@ -170,9 +159,9 @@ class _MachineCode:
         if counts.explains:
             counts.reasons[name] = kept().reason(key, name)
         compiled.fndesc.typemap = compiled.fndesc.calltypes = None
-        names = [one.name for one in library._final_module.functions if not one.is_declaration]
-        globals_ = library._final_module.global_variables
-        names += [one.name for one in globals_ if not one.is_declaration]
+        module = library._final_module
+        every = itertools.chain(module.functions, module.global_variables)
+        names = [one.name for one in every if not one.is_declaration]
         others = compiled._find_referenced_environments()
         told = compiled.fndesc, compiled.environment, compiled.signature, names, others, stages
         code = Code(library.name, (), library._get_compiled_object())
@@ -194,7 +183,10 @@ class _MachineCode:
     def _found(self, key: str) -> Any:
         hit = kept().find(key)
         code = None if hit is None else kept().code(hit[0].code)
-        if hit is None or code is None or _is_of_another(hit[0].needs):
+        if hit is None or code is None:
+            return None
+        # code here of something that was defined anew since: its names in machine code are the same
+        if any(_words.get(rest, word) != word for rest, word in map(_split, hit[0].needs)):
             return None
         try:
             fndesc, environment, signature, names, others, stages = pickle.loads(hit[0].about)

@@ -46,7 +46,6 @@ class Later:
         return type(self.made)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Run it."""
         return self.made(*arguments)
 
     def __reduce_ex__(self, protocol: Any) -> Any:

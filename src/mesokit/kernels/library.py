@@ -102,7 +102,6 @@ _ready: dict[str, Any] = {}  # machine code of stages in this process, by the ha
 
 
 def _key_of_stage(hash: str) -> str:
-    """The key of the machine code of a stage."""
     return digest(f"stage {hash} {processor()} {versions()}")
 
 
@@ -141,7 +140,6 @@ def machine_code(code: Code, names: Iterable[str]) -> Any:
 
 
 def _defined(module: Any) -> list[str]:
-    """Names of the functions that are in a module."""
     return [function.name for function in module.functions if not function.is_declaration]
 
 

@@ -78,16 +78,12 @@ def _named(function: Any) -> dict[str, Any]:
 def place_of(thing: Any) -> str:
     """Module and name under which every process finds a function or class. Raises Unknown."""
     module, name = thing.__module__, thing.__qualname__
-    if module == "__main__" and not _is_script():
+    main = getattr(sys.modules["__main__"], "__file__", "") or "no file"
+    if module == "__main__" and not Path(main).is_file():
         raise Unknown(f"{name} is of a notebook, whose cells may define it anew")
     if module is None or "<locals>" in name or _find(module, name) is not thing:
         raise Unknown(f"{module}.{name}")
     return f"{module}:{name}"
-
-
-def _is_script() -> bool:
-    """Whether what runs is a file, and no notebook."""
-    return Path(getattr(sys.modules["__main__"], "__file__", "") or "no file").is_file()
 
 
 def _find(module: str, name: str) -> Any:
@@ -153,11 +149,9 @@ def describe(value: Any, within: tuple = (), parts: Iterable[str] = ()) -> str:
         items = [(describe(key, within), describe(item, within)) for key, item in value.items()]
         return f"dict {sorted(items)}"
     if isinstance(value, python_types.ModuleType):
-        taken = _taken(value, parts)
-        return (
-            f"module {value.__name__} "
-            f"{ {name: describe(taken[name], within, parts) for name in taken} }"
-        )
+        taken = _taken(value, parts).items()
+        told = {name: describe(one, within, parts) for name, one in taken}
+        return f"module {value.__name__} {told}"
     if isinstance(value, type):
         return _class(value)
     return _callable(value, within)
@@ -200,9 +194,8 @@ def _callable(value: Any, within: tuple) -> str:
     if isinstance(function, python_types.FunctionType) and not known:
         return f"function {_function(function, within)}"
     if isinstance(function, (python_types.BuiltinFunctionType, np.ufunc)) or known:
-        return (
-            f"built in {getattr(value, '__name__', None) or describe_type(types.unliteral(value))}"
-        )
+        name = getattr(value, "__name__", None) or describe_type(types.unliteral(value))
+        return f"built in {name}"
     raise Unknown(repr(value))
 
 

@@ -20,21 +20,14 @@ from numba import njit
 from numba._dynfunc import make_function
 from numba.core import typed_passes, untyped_passes
 from numba.core.bytecode import FunctionIdentity
-from numba.core.compiler import Compiler, CompileResult
+from numba.core.compiler import Compiler, CompileResult, compile_result
 from numba.core.compiler_machinery import register_pass
 from numba.core.environment import Environment
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
 
 from mesokit.kernels.kept import counts, kept, version_line, versions
-from mesokit.kernels.library import (
-    STAGE,
-    PartLibrary,
-    StageLibrary,
-    loaded,
-    missing,
-    needs_below,
-)
+from mesokit.kernels.library import STAGE, PartLibrary, StageLibrary, loaded, missing, needs_below
 from mesokit.kernels.made_of import Unknown, code_of, describe_type, digest, needs_of
 from mesokit.kernels.store import Code, Entry, Store
 
@@ -70,13 +63,9 @@ def _identified(cls: type, function: Any) -> Any:
     """
     made = _identity(function)
     text = f"{_compiling[-1]} {made.modname} {made.func_qualname} {next(_numbers)}"
-    return _numbered(made, text)
-
-
-def _numbered(identity: Any, text: str) -> Any:
-    identity.unique_id = int(digest(text)[:14], 16)
-    identity.unique_name = f"{identity.func_qualname}${identity.unique_id}"
-    return identity
+    made.unique_id = int(digest(text)[:14], 16)
+    made.unique_name = f"{made.func_qualname}${made.unique_id}"
+    return made
 
 
 FunctionIdentity.from_function = classmethod(_identified)
@@ -110,8 +99,7 @@ class _LoweringOfStage(_Lowering):
 
 
 def _known_to_numba(library: Any, about: Any, environment: Any) -> Any:
-    """What numba knows a compiled function by: an object that Python could call, which leads
-    nowhere."""
+    """Numba's object for a compiled function, which Python could call; it leads nowhere."""
     name = about.qualname.split(".")[-1]
     entry = make_function(about.lookup_module(), name, "", 0, environment, (library,))
     cpu_target.target_context.insert_user_function(entry, about, [library])
@@ -164,7 +152,7 @@ class PartCompiler(Compiler):
         return made
 
     def _key(self, function: Any) -> str | None:
-        """What a part is known by; None if no other process would know it again."""
+        """The key of a part; None if no other process could recognise it."""
         state = self.state
         try:
             given = [describe_type(kind) for kind in state.args]
@@ -182,7 +170,6 @@ class StageCompiler(PartCompiler):
 
 
 def _found(key: str) -> CompileResult | None:
-    """A kept part as a result of compiling it."""
     hit = kept().find(key)
     if hit is None:
         return None
@@ -198,16 +185,14 @@ def _found(key: str) -> CompileResult | None:
 
 
 def result_of(library: Any, fndesc: Any, signature: Any, entry: Any, environment: Any) -> Any:
-    """What numba would say had it compiled what was kept."""
-    return CompileResult(
+    """Numba's record of a compilation, for code that was kept."""
+    return compile_result(
         typing_context=cpu_target.typing_context,
         target_context=cpu_target.target_context,
         entry_point=entry,
         typing_error=None,
-        type_annotation=None,
         signature=signature,
         library=library,
-        call_helper=None,
         environment=environment,
         lifted=(),
         fndesc=fndesc,
@@ -219,8 +204,8 @@ def result_of(library: Any, fndesc: Any, signature: Any, entry: Any, environment
 
 
 def as_bytes(told: Any) -> bytes:
-    """What numba must be told of compiled code. Classes are named, and not copied: those of a
-    script that is run again are the same."""
+    """Pickle what numba needs to load compiled code. Classes are named, and not copied: those of
+    a script that is run again are the same."""
     try:
         return pickle.dumps(told)
     except Exception:  # something that has no name
@@ -228,7 +213,6 @@ def as_bytes(told: Any) -> bytes:
 
 
 def _keep(key: str, function: Any, made: Any) -> None:
-    """Write a compiled part down for other kernels and processes."""
     library, below = made.library, needs_below(made.library)
     if below is None or library._reload_init:
         return

@@ -38,10 +38,8 @@ def _with_called(store: Store, hash: str) -> list[Code]:
     found: dict[str, Code] = {}
     open_ = [hash]
     while open_:
-        one = open_.pop()
-        if one not in found:
-            code = store.code(one)
-            if code is None:
+        if (one := open_.pop()) not in found:
+            if (code := store.code(one)) is None:
                 return []
             found[one] = code
             open_ += code.called

@@ -29,22 +29,10 @@ FORMAT = 1  # of the tables
 BOUND = 500_000_000  # bytes; what has not been used for longest goes first
 PATIENCE = 5.0  # seconds that a process waits for one that writes
 MOST_ENTRIES = 4  # of one key: states of what it needs, such as two versions of the sources
-NETWORK = (
-    "nfs",
-    "nfs4",
-    "cifs",
-    "smb3",
-    "smbfs",
-    "9p",
-    "afs",
-    "fuse.sshfs",
-    "lustre",
-    "gpfs",
-    "beegfs",
-    "ceph",
-    "glusterfs",
-    "fuse.glusterfs",
-)
+NETWORK = {
+    "nfs", "nfs4", "cifs", "smb3", "smbfs", "9p", "afs", "fuse.sshfs", "lustre", "gpfs", "beegfs",
+    "ceph", "glusterfs", "fuse.glusterfs",
+}  # fmt: skip
 TABLES = """
 CREATE TABLE IF NOT EXISTS needs (id INTEGER PRIMARY KEY AUTOINCREMENT, line TEXT UNIQUE);
 CREATE TABLE IF NOT EXISTS entries (id INTEGER PRIMARY KEY, key TEXT, name TEXT, needs BLOB,
@@ -56,7 +44,7 @@ CREATE TABLE IF NOT EXISTS code (hash TEXT PRIMARY KEY, name TEXT, called TEXT, 
 
 
 class Entry(NamedTuple):
-    """What is known of one compiled function."""
+    """Record of one compiled function."""
 
     name: str
     needs: frozenset[str]
@@ -113,12 +101,10 @@ def _private(place: Path) -> Path:
 def on_network(place: Path, mounts: Path = Path("/proc/mounts")) -> bool:
     """Whether a folder is on a file system of the network, whose locks are not to be relied on."""
     try:
-        rows = [
-            line.split()
-            for line in mounts.read_text(encoding="utf-8", errors="replace").splitlines()
-        ]
+        text = mounts.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return False
+    rows = map(str.split, text.splitlines())
     within = [row for row in rows if Path(os.path.abspath(place)).is_relative_to(row[1])]
     return bool(within) and max(within, key=lambda row: len(row[1]))[2] in NETWORK
 
@@ -140,26 +126,20 @@ class Store:
         self.file, self.writes, self.level = file, writes, level
         self._lines: dict[int, str] = {}
         self._used: dict[str, set[Any]] = {"entries": set(), "code": set()}
-        self._disk = self._opened()
-
-    def _opened(self) -> sqlite3.Connection:
-        if not self.writes:
-            uri = f"{self.file.as_uri()}?mode=ro&immutable=1"
-            return sqlite3.connect(uri, uri=True, check_same_thread=False)
         try:
-            disk = sqlite3.connect(self.file, PATIENCE, check_same_thread=False)
-            disk.isolation_level = None
-            disk.execute("PRAGMA journal_mode = WAL")
-            disk.execute("PRAGMA synchronous = NORMAL")
-            disk.executescript(TABLES)
+            if writes:
+                self._disk = sqlite3.connect(self.file, PATIENCE, check_same_thread=False)
+                self._disk.isolation_level = None
+                self._disk.execute("PRAGMA journal_mode = WAL")
+                self._disk.execute("PRAGMA synchronous = NORMAL")
+                self._disk.executescript(TABLES)
         except sqlite3.OperationalError as error:  # read-only or full: what is there can be read
             self.writes = False
             if "locked" in str(error):
                 raise
-            # where nothing can be written SQLite has no place for its locks, nor need of any
+        if not self.writes:  # SQLite has no place for its locks there, nor need of any
             uri = f"{self.file.as_uri()}?mode=ro&immutable=1"
-            return sqlite3.connect(uri, uri=True, check_same_thread=False)
-        return disk
+            self._disk = sqlite3.connect(uri, uri=True, check_same_thread=False)
 
     def find(self, key: str) -> Iterator[Entry]:
         """Entries of a key, the newest first. Raises sqlite3.Error."""
@@ -185,9 +165,8 @@ class Store:
 
     def code(self, hash: str) -> Code | None:
         """The code of this hash; None if it is not here. Raises sqlite3.Error."""
-        row = self._disk.execute(
-            "SELECT name, called, body FROM code WHERE hash = ?", (hash,)
-        ).fetchone()
+        question = "SELECT name, called, body FROM code WHERE hash = ?"
+        row = self._disk.execute(question, (hash,)).fetchone()
         if row is None:
             return None
         try:
@@ -201,9 +180,8 @@ class Store:
 
     def has_code(self, hash: str) -> bool:
         """Whether code of this hash is here. Raises sqlite3.Error."""
-        return (
-            self._disk.execute("SELECT 1 FROM code WHERE hash = ?", (hash,)).fetchone() is not None
-        )
+        found = self._disk.execute("SELECT 1 FROM code WHERE hash = ?", (hash,))
+        return found.fetchone() is not None
 
     def has_name(self, name: str) -> bool:
         """Whether there is any entry of this name. Raises sqlite3.Error."""
@@ -234,11 +212,8 @@ class Store:
             digest = hashlib.sha256(text + needs + entry.about).digest()
             row = key, entry.name, needs, entry.about, entry.code, digest, now
             self._disk.execute("DELETE FROM entries WHERE key = ? AND needs = ?", (key, needs))
-            self._disk.execute(
-                "INSERT INTO entries (key, name, needs, about, code, digest, used)"
-                " VALUES (?, ?, ?, ?, ?, ?, ?)",
-                row,
-            )
+            columns = "key, name, needs, about, code, digest, used"
+            self._disk.execute(f"INSERT INTO entries ({columns}) VALUES (?, ?, ?, ?, ?, ?, ?)", row)
             self._disk.execute(
                 "DELETE FROM entries WHERE key = ? AND id NOT IN"
                 " (SELECT id FROM entries WHERE key = ? ORDER BY id DESC LIMIT ?)",

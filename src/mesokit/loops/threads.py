@@ -9,7 +9,7 @@ from llvmlite import ir
 from numba import typeof, types
 from numba.extending import intrinsic
 
-from mesokit.kernels.group import all_packed, packed
+from mesokit.kernels.packing import all_packed, packed
 from mesokit.loops.clock import CLOCK_SIZE
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.system import yield_core

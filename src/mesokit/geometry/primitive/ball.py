@@ -9,11 +9,9 @@ CONVEX = True
 
 @scalar
 def distance(p, samples, r):
-    """Signed distance of r."""
     return length(offset(p, r)) - real(p, 6)
 
 
 @scalar
 def normal(p, samples, r):
-    """Unit normal into the fluid at r, or next to it."""
     return unit(offset(p, r))

@@ -24,7 +24,6 @@ def turned(p, a, sine):
 
 @scalar
 def distance(p, samples, r):
-    """Signed distance of r."""
     x, half = turned(p, offset(p, r), -real(p, 7)), vector(p, 3, r)
     beyond, deepest = 0.0, -math.inf
     for k in range(len(r)):

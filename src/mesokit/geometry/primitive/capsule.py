@@ -21,11 +21,9 @@ def from_line(p, r):
 
 @scalar
 def distance(p, samples, r):
-    """Signed distance of r."""
     return length(from_line(p, r)) - real(p, 6)
 
 
 @scalar
 def normal(p, samples, r):
-    """Unit normal into the fluid at r, or next to it."""
     return unit(from_line(p, r))

@@ -9,11 +9,9 @@ CONVEX = True
 
 @scalar
 def distance(p, samples, r):
-    """Signed distance of r."""
     return dot(offset(p, r), vector(p, 3, r))
 
 
 @scalar
 def normal(p, samples, r):
-    """Unit normal into the fluid."""
     return vector(p, 3, r)

@@ -17,11 +17,9 @@ def from_axis(p, r):
 
 @scalar
 def distance(p, samples, r):
-    """Signed distance of r."""
     return length(from_axis(p, r)) - real(p, 6)
 
 
 @scalar
 def normal(p, samples, r):
-    """Unit normal into the fluid at r, or next to it."""
     return unit(from_axis(p, r))

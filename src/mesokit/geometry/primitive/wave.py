@@ -36,7 +36,6 @@ def distance(p, samples, r):
 
 @scalar
 def normal(p, samples, r):
-    """Unit normal into the fluid."""
     _, slope = height_and_slope(p, r)
     size = real(p, 7) / math.sqrt(1.0 + slope * slope)
     out = with_item(scaled(0.0, r), int(real(p, 4)), size)

@@ -69,19 +69,14 @@ def fitted(grid: Grid, room: Room) -> Region:
             widths[axis] = (int(before), int(after))
             values = np.pad(values, widths, mode="edge")
             origin[axis] -= before * grid.spacing
-        elif not repeats[axis]:
-            _require_fluid(values, axis)
+        for end in () if shut or repeats[axis] else (0, -1):
+            if values.take(end, axis).min() <= 0.0:
+                raise ValueError(
+                    f"the solid reaches the {'first' if end == 0 else 'last'} samples along "
+                    f"{'xyz'[axis]}; expected fluid around it, or a grid that spans the box: the "
+                    "length over the spacing as many samples, or one more"
+                )
     return region.sampled(smoothed(values, grid.spacing, repeats), origin, grid.spacing, repeats)
-
-
-def _require_fluid(values: Floats, axis: int) -> None:
-    for end in (0, -1):
-        if values.take(end, axis).min() <= 0.0:
-            raise ValueError(
-                f"the solid reaches the {'first' if end == 0 else 'last'} samples along "
-                f"{'xyz'[axis]}; expected fluid around it, or a grid that spans the box: the "
-                "length over the spacing as many samples, or one more"
-            )
 
 
 def smoothed(values: Floats, spacing: float, repeats: list[bool]) -> Floats:

@@ -1,27 +1,22 @@
-"""What shapes that are read from a file share.
+"""Base class of shapes that are read from a file.
 
 The file is read once for each shape, whose solid is then what the file held, whatever becomes of
 it. A run keeps the distances themselves, so that it goes on with the same solid.
 """
-
-from __future__ import annotations
 
 import functools
 import hashlib
 import math
 from abc import abstractmethod
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesokit.case.component import component, param
 from mesokit.case.given.file import FileName, FromContents
 from mesokit.errors import CaseError
-from mesokit.geometry.region import Region
+from mesokit.geometry.region import Region, Room
 from mesokit.geometry.samples.distances import Floats, Grid, fitted, slope
 from mesokit.geometry.shape_protocol import Shape
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 
 @component
@@ -43,7 +38,7 @@ class FromFile(FromContents, Shape):
         """Its signed distance, positive outside."""
 
     def distances(self, room: Room) -> Grid:
-        """The same, found once for what the file held."""
+        """`grid`, made once for the contents of the file."""
         return _found(self, self.digest, room)
 
     def body(self, room: Room) -> Region:
@@ -74,10 +69,10 @@ class FromFile(FromContents, Shape):
 
     @abstractmethod
     def notes(self, room: Room, samples: Floats) -> Iterator[str]:
-        """What users should know of the solid that the samples describe, key first."""
+        """Remarks for users on the solid that the samples describe, key first."""
 
     def kept(self) -> dict[str, Any]:
-        """What it shares with the `Sampled` that a run keeps of it."""
+        """Parameters that it shares with the `Sampled` that a run keeps of it."""
         return {"fluid": self.fluid, "surface": self.surface, "virtual": self.virtual}
 
 

@@ -1,10 +1,8 @@
 """A shape repeated on a regular lattice."""
 
-from __future__ import annotations
-
 import itertools
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from pydantic import field_validator
 
@@ -13,10 +11,8 @@ from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
 from mesokit.geometry import region
 from mesokit.geometry.composite import require_bare
+from mesokit.geometry.region import Room
 from mesokit.geometry.shape_protocol import Piece, Repeatable, Shape, pieces_of
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 MOST_COPIES = 2**16
 

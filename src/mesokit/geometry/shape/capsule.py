@@ -1,22 +1,18 @@
 """A rod with round ends."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Literal
 
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
-from mesokit.geometry import region
+from mesokit.geometry.region import Region, Room, capsule
 from mesokit.geometry.shape_protocol import Simple
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 
 @component
 class Capsule(Simple):
     """All places within a radius of the straight line between two ends."""
 
+    per_axis = ("start", "end")
     shape: Literal["capsule"] = tag("capsule")
     start: Many[float] = param(doc="centre of one round end", unit="a")
     end: Many[float] = param(doc="centre of the other", unit="a")
@@ -26,8 +22,8 @@ class Capsule(Simple):
         if self.start == self.end:
             raise ValueError("end = start: expected another place; a ball is a disk or a sphere")
 
-    def body(self, room: Room) -> region.Region:
-        return region.capsule(self.start, self.end, self.radius)
+    def body(self, room: Room) -> Region:
+        return capsule(self.start, self.end, self.radius)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
         return tuple(0.5 * (a + b) for a, b in zip(self.start, self.end, strict=True))
@@ -38,6 +34,3 @@ class Capsule(Simple):
         span = [b - a for a, b in zip(self.start, self.end, strict=True)]
         size = sum(x * x for x in span) ** 0.5
         return tuple(x / size for x in span)
-
-    def vectors(self) -> dict[str, Any]:
-        return {"start": self.start, "end": self.end}

@@ -1,16 +1,11 @@
 """A channel whose walls are cosines."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
-from mesokit.geometry import region
+from mesokit.geometry.region import Region, Room, union, wave
 from mesokit.geometry.shape_protocol import Shape
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 
 @component
@@ -38,8 +33,8 @@ class CosineChannel(Shape):
                 f"{self.width / 2:g}, or the channel closes"
             )
 
-    def body(self, room: Room) -> region.Region:
-        """What lies beyond both walls."""
+    def body(self, room: Room) -> Region:
+        """The region beyond both walls."""
         along, across = AXES.index(self.axis), AXES.index(self.across)
         per_length = self.waves / room.size[along]
         middle = 0.5 * room.size[across]
@@ -49,10 +44,8 @@ class CosineChannel(Shape):
             place[across] = middle + 0.5 * side * self.width
             shift = self.winding or side > 0
             place[along] = 0.0 if shift else 0.5 / per_length
-            walls.append(
-                region.wave(place, along, across, self.amplitude, per_length, above=side < 0)
-            )
-        return region.union(walls)
+            walls.append(wave(place, along, across, self.amplitude, per_length, above=side < 0))
+        return union(walls)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
         return tuple(0.5 * length for length in room.size)

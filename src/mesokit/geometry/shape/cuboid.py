@@ -1,42 +1,27 @@
 """A cuboid, in 3D."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import field_validator
 
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
-from mesokit.geometry import region
-from mesokit.geometry.shape_protocol import Simple
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
+from mesokit.geometry.region import Region, Room, brick
+from mesokit.geometry.shape_protocol import Centred, Simple, positive
 
 
 @component
-class Cuboid(Simple):
+class Cuboid(Centred, Simple):
     """A cuboid (3D), turned about z by an angle."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
+    per_axis = ("centre", "size")
     shape: Literal["cuboid"] = tag("cuboid")
     centre: Many[float] = param(doc="its centre", unit="a")
     size: Many[float] = param(doc="its sides", unit="a")
     angle: float = param(0.0, doc="turn about z, counter-clockwise", unit="degrees")
 
-    @field_validator("size")
-    @classmethod
-    def _positive(cls, size: tuple[float, ...]) -> tuple[float, ...]:
-        if not all(x > 0 for x in size):
-            raise ValueError("expected positive lengths")
-        return size
+    _positive = field_validator("size")(positive)
 
-    def body(self, room: Room) -> region.Region:
-        return region.brick(self.centre, self.size, self.angle)
-
-    def pivot(self, room: Room) -> tuple[float, ...]:
-        return self.centre
-
-    def vectors(self) -> dict[str, Any]:
-        return {"centre": self.centre, "size": self.size}
+    def body(self, room: Room) -> Region:
+        return brick(self.centre, self.size, self.angle)

@@ -1,23 +1,18 @@
 """A round cylinder without ends, in 3D; with the fluid inside, a round pipe."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import field_validator
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either, Many
-from mesokit.geometry import region
-from mesokit.geometry.shape_protocol import Simple
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
+from mesokit.geometry.region import Region, Room, rod
+from mesokit.geometry.shape_protocol import Centred, Simple
 
 
 @component
-class Cylinder(Simple):
+class Cylinder(Centred, Simple):
     """A round cylinder through the whole box (3D), along any direction that fits the box."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
@@ -41,14 +36,8 @@ class Cylinder(Simple):
         size = sum(x * x for x in self.axis) ** 0.5
         return tuple(x / size for x in self.axis)
 
-    def body(self, room: Room) -> region.Region:
-        return region.rod(self.centre, self.direction, self.radius)
-
-    def pivot(self, room: Room) -> tuple[float, ...]:
-        return self.centre
+    def body(self, room: Room) -> Region:
+        return rod(self.centre, self.direction, self.radius)
 
     def axis_of_rotation(self, room: Room) -> tuple[float, ...]:
         return self.direction
-
-    def vectors(self) -> dict[str, Any]:
-        return {"centre": self.centre}

@@ -1,24 +1,20 @@
 """Everything behind a plane."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Literal
 
 from pydantic import field_validator
 
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
-from mesokit.geometry import region
+from mesokit.geometry.region import Region, Room, half_space
 from mesokit.geometry.shape_protocol import Simple
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 
 @component
 class HalfSpace(Simple):
     """Everything behind a plane, such as a floor or an inclined wall."""
 
+    per_axis = ("point", "normal")
     shape: Literal["half-space"] = tag("half-space")
     point: Many[float] = param(doc="a place on the plane", unit="a")
     normal: Many[float] = param(doc="direction from the plane into the fluid")
@@ -30,11 +26,8 @@ class HalfSpace(Simple):
             raise ValueError("expected a direction, not all zero")
         return normal
 
-    def body(self, room: Room) -> region.Region:
-        return region.half_space(self.point, self.normal)
+    def body(self, room: Room) -> Region:
+        return half_space(self.point, self.normal)
 
     def pivot(self, room: Room) -> tuple[float, ...]:
         return self.point
-
-    def vectors(self) -> dict[str, Any]:
-        return {"point": self.point, "normal": self.normal}

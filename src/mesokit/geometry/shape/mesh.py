@@ -1,14 +1,12 @@
 """A solid given by a closed surface of triangles."""
 
-from __future__ import annotations
-
 import functools
 import importlib
 import io
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +15,10 @@ from scipy import sparse
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
+from mesokit.geometry.region import Room
 from mesokit.geometry.samples.distances import Grid, volume
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.samples.simplices import signed_distance
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 Floats = NDArray[np.float64]
 REACH = 2.0  # cells around the surface in which distances are kept
@@ -50,6 +46,7 @@ class Mesh(FromFile):
     smoothed. Reading meshes takes the package trimesh: pip install 'mesokit[mesh]'.
     """
 
+    per_axis = ("position",)
     shape: Literal["mesh"] = tag("mesh")
     position: Either[None, float] = param(
         None,
@@ -119,8 +116,26 @@ class Mesh(FromFile):
         values[window] = np.maximum(here, -own) if part.hollow else np.minimum(here, own)
 
     def _parts(self, room: Room) -> list[Closed]:
-        """Its closed surfaces, or in 2D their outlines, each before those that lie in it."""
-        return self.closed if room.dimension == 3 else self._section()
+        """Its closed surfaces, or in 2D outlines of its section, each before those that lie in it.
+
+        The section is that of a plane across z.
+        """
+        if room.dimension == 3:
+            return self.closed
+        low, high = _ends(self.closed)
+        bottom, top = float(low[2]), float(high[2])
+        level = (self.height or 0.0) + ABOVE * (top - bottom)
+        found = []
+        for part in self.closed:
+            outline = _cut(part.corners, level)
+            if len(outline):
+                area = 0.5 * float(np.linalg.det(outline - outline[0, 0]).sum())
+                found.append(Closed(outline, part.hollow, abs(area)))
+        if not found:
+            raise CaseError(
+                f"height = {self.height or 0.0:g}: the mesh lies between {bottom:g} and {top:g}"
+            )
+        return found
 
     def unfit(self, room: Room, size: float) -> CaseError:
         """The error for samples that miss the mesh."""
@@ -132,7 +147,7 @@ class Mesh(FromFile):
         )
 
     def notes(self, room: Room, samples: Floats) -> Iterator[str]:
-        """What users should know: volume that the samples miss, a mesh larger than the box."""
+        """Remarks for users: volume that the samples miss, a mesh larger than the box."""
         parts = self._parts(room)
         exact, found = _size(parts), volume(samples, self.spacing)
         if exact is not None and abs(found - exact) > OFF * exact:
@@ -149,27 +164,8 @@ class Mesh(FromFile):
                     f"{beyond:.4g} cells along {'xyz'[axis]}, and overlaps its own images"
                 )
 
-    def _section(self) -> list[Closed]:
-        """The outlines in which a plane across z cuts it."""
-        low, high = _ends(self.closed)
-        bottom, top = float(low[2]), float(high[2])
-        level = (self.height or 0.0) + ABOVE * (top - bottom)
-        found = [
-            Closed(outline, part.hollow, abs(_area(outline)))
-            for part in self.closed
-            if len(outline := _cut(part.corners, level))
-        ]
-        if not found:
-            raise CaseError(
-                f"height = {self.height or 0.0:g}: the mesh lies between {bottom:g} and {top:g}"
-            )
-        return found
-
     def pivot(self, room: Room) -> tuple[float, ...]:
         return self.position or (0.0,) * room.dimension
-
-    def vectors(self) -> dict[str, Any]:
-        return {} if self.position is None else {"position": self.position}
 
 
 def _one_winding(faces: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -186,7 +182,9 @@ def _one_winding(faces: NDArray[np.intp]) -> NDArray[np.intp]:
     pairs = np.sort(np.stack([one // 3, two // 3], axis=1), axis=1)
     pairs, first = np.unique(pairs, axis=0, return_index=True)
     relation = np.where(turned[first], -1, 1)
-    which = _surfaces(pairs, n)
+    # the number of the surface of each triangle, which neighbours share
+    graph = sparse.coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n))
+    which = np.asarray(sparse.csgraph.connected_components(graph, directed=False)[1])
     roots = np.unique(which, return_index=True)[1]
     # a triangle more, beside one of each surface: all are reached from it
     pairs = np.concatenate([pairs, np.stack([roots, np.full(len(roots), n)], axis=1)])
@@ -200,12 +198,6 @@ def _one_winding(faces: NDArray[np.intp]) -> NDArray[np.intp]:
         sign[face] = sign[last] * step
     sign = sign[:n] * np.where(np.bincount(which, sign[:n]) < 0, -1, 1)[which]
     return np.where(sign[:, None] < 0, faces[:, ::-1], faces)
-
-
-def _surfaces(pairs: NDArray[np.intp], n: int) -> NDArray[np.intp]:
-    """The number of the surface of each of n triangles, which neighbours share."""
-    graph = sparse.coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n))
-    return np.asarray(sparse.csgraph.connected_components(graph, directed=False)[1])
 
 
 def _bodies(corners: Floats, faces: NDArray[np.intp]) -> list[Closed]:
@@ -252,13 +244,7 @@ def _cut(corners: Floats, level: float) -> Floats:
     return np.array(outline)
 
 
-def _area(outline: Floats) -> float:
-    """Within an outline, signed."""
-    return 0.5 * float(np.linalg.det(outline - outline[0, 0]).sum())
-
-
 def _ends(parts: Sequence[Closed]) -> tuple[Floats, Floats]:
-    """The lowest and the highest coordinates of them all."""
     low = np.min([part.corners.min(axis=(0, 1)) for part in parts], axis=0)
     return low, np.max([part.corners.max(axis=(0, 1)) for part in parts], axis=0)
 

@@ -1,13 +1,11 @@
 """A solid drawn in a picture, in 2D."""
 
-from __future__ import annotations
-
 import functools
 import io
 import math
 import warnings
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +15,10 @@ from scipy.spatial import KDTree
 
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
+from mesokit.geometry.region import Room
 from mesokit.geometry.samples.distances import Grid, spans
 from mesokit.geometry.samples.from_file import FromFile
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
+from mesokit.geometry.shape_protocol import positive
 
 Floats = NDArray[np.float64]
 REACH = 4.0  # cells from the outline in which distances are kept
@@ -46,6 +43,7 @@ class Picture(FromFile):
     """
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)
+    per_axis = ("origin", "size")
     shape: Literal["picture"] = tag("picture")
     origin: Either[None, float] = param(
         None, doc="place of its lower left corner (that of the box unless said)", unit="a"
@@ -54,12 +52,7 @@ class Picture(FromFile):
         None, doc="its width and height (those of the box unless said)", unit="a"
     )
 
-    @field_validator("size")
-    @classmethod
-    def _positive(cls, size: tuple[float, ...] | None) -> tuple[float, ...] | None:
-        if size is not None and not all(x > 0 for x in size):
-            raise ValueError("expected positive lengths")
-        return size
+    _positive = field_validator("size")(positive)
 
     def frame(self, room: Room) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Its lower left corner, and its width and height."""
@@ -94,7 +87,7 @@ class Picture(FromFile):
         return Grid(wide * distance, origin, wide)
 
     def notes(self, room: Room, samples: Floats) -> Iterator[str]:
-        """What users should know: few pixels, shades of grey, a picture larger than the box."""
+        """Remarks for users: few pixels, shades of grey, a picture larger than the box."""
         name = show(self.file, 500)
         white, (_, size) = self._white(), self.frame(room)
         per_cell = white.shape[0] / size[0]
@@ -156,10 +149,6 @@ class Picture(FromFile):
         corner, size = self.frame(room)
         return tuple(x + 0.5 * length for x, length in zip(corner, size, strict=True))
 
-    def vectors(self) -> dict[str, Any]:
-        given = {"origin": self.origin, "size": self.size}
-        return {key: value for key, value in given.items() if value is not None}
-
 
 def outline_distance(white: Floats, repeats: list[bool], reach: float) -> Floats | None:
     """Signed distance in pixels, at most `reach`, from where a picture is half white.
@@ -172,7 +161,10 @@ def outline_distance(white: Floats, repeats: list[bool], reach: float) -> Floats
     slopes = [
         ndimage.gaussian_filter(white, BLUR, order=order, mode=modes) for order in ((1, 0), (0, 1))
     ]
-    fields = [_surrounded(field, repeats) for field in (level, *slopes)]
+    fields = [level, *slopes]
+    for axis, again in enumerate(repeats):  # one more pixel at each end
+        widths = [(1, 1) if k == axis else (0, 0) for k in range(2)]
+        fields = [np.pad(field, widths, mode="wrap" if again else "edge") for field in fields]
     steep = np.hypot(*slopes)
     near = np.argwhere((np.abs(level) < NEAR * steep) & (steep > 1e-3))
     steps = (np.arange(FINE) + 0.5) / FINE - 0.5
@@ -198,11 +190,3 @@ def outline_distance(white: Floats, repeats: list[bool], reach: float) -> Floats
     tree = KDTree(points, boxsize=sides, leafsize=LEAF)
     distance, _ = tree.query(pixels, distance_upper_bound=reach)
     return np.where(level < 0.0, -1.0, 1.0) * np.minimum(distance, reach).reshape(white.shape)
-
-
-def _surrounded(field: Floats, repeats: list[bool]) -> Floats:
-    """With one more pixel at each end."""
-    for axis, again in enumerate(repeats):
-        widths = [(1, 1) if k == axis else (0, 0) for k in range(2)]
-        field = np.pad(field, widths, mode="wrap" if again else "edge")
-    return field

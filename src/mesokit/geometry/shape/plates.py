@@ -6,29 +6,13 @@ from typing import Literal, NamedTuple
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
-from mesokit.geometry.cut import behind, grip, height, home, roomy, surface_flow
-from mesokit.geometry.protocol import (
-    across,
-    exposed,
-    facing,
-    first_hit,
-    free,
-    happens,
-    homed,
-    leaps,
-    lever,
-    rebound,
-    settled,
-    surface_of,
-    touches,
-    unmet,
-)
+from mesokit.geometry import protocol
 from mesokit.geometry.region import Room, half_space
 from mesokit.geometry.shape_protocol import Body, Piece, Wall
 from mesokit.geometry.solids.flight import time_to_fall
 from mesokit.geometry.surface import Surface
 from mesokit.scalar.intrinsics import floor, mul_add, with_item
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.vector import added_scaled, scaled
 
 
@@ -76,7 +60,7 @@ class Plates(Wall):
         """Parameters for the scalar functions below."""
         axis = AXES.index(self.axis)
         rest = (0.0,) * len(size)
-        return (SlitX, SlitY, SlitZ)[axis](
+        return SLITS[axis](
             tuple(float(length) for length in size),
             float(size[axis]),
             self.lower.velocity or rest,
@@ -98,42 +82,29 @@ class Slit(NamedTuple):
 
 
 # A class for each axis, so that picking the height out of a position costs nothing.
-
-
 class SlitX(Slit):
     """Plates across x."""
-
-    __slots__ = ()
 
 
 class SlitY(Slit):
     """Plates across y."""
 
-    __slots__ = ()
-
 
 class SlitZ(Slit):
     """Plates across z."""
 
-    __slots__ = ()
+
+SLITS = SlitX, SlitY, SlitZ
 
 
-@across.register(SlitX)
-def _(solid):
-    return 0
+@by_type
+def across(solid):
+    """The axis that plates close, as a literal."""
+    axis = SLITS.index(solid.instance_class)
+    return lambda solid: axis
 
 
-@across.register(SlitY)
-def _(solid):
-    return 1
-
-
-@across.register(SlitZ)
-def _(solid):
-    return 2
-
-
-@touches.register(SlitX, SlitY, SlitZ)
+@protocol.touches.register(*SLITS)
 def _(solid, clear, r, v, a, time):
     k = across(solid)
     h, end = r[k], mul_add(v[k], time, r[k])
@@ -141,12 +112,12 @@ def _(solid, clear, r, v, a, time):
     return (min(h, end) - bend <= 0.0) | (max(h, end) + bend >= solid.width)
 
 
-@unmet.register(SlitX, SlitY, SlitZ)
+@protocol.unmet.register(*SLITS)
 def _(solid):
     return 0
 
 
-@first_hit.register(SlitX, SlitY, SlitZ)
+@protocol.first_hit.register(*SLITS)
 def _(solid, r, v, a, time, last):
     k = across(solid)
     below = time_to_fall(r[k], v[k], a[k], time)
@@ -154,37 +125,37 @@ def _(solid, r, v, a, time, last):
     return (below, 0) if below < above else (above, 1)
 
 
-@leaps.register(SlitX, SlitY, SlitZ)
+@protocol.leaps.register(*SLITS)
 def _(solid, displacement):
     return False
 
 
-@free.register(SlitX, SlitY, SlitZ)
+@protocol.free.register(*SLITS)
 def _(solid, r, v, a, time):
     return False  # `first_hit` is as quick
 
 
-@homed.register(SlitX, SlitY, SlitZ)
+@protocol.homed.register(*SLITS)
 def _(solid, r):
     return r
 
 
-@happens.register(SlitX, SlitY, SlitZ)
+@protocol.happens.register(*SLITS)
 def _(solid, contact):
     return True
 
 
-@surface_of.register(SlitX, SlitY, SlitZ)
+@protocol.surface_of.register(*SLITS)
 def _(solid, contact):
     return contact
 
 
-@lever.register(SlitX, SlitY, SlitZ)
+@protocol.lever.register(*SLITS)
 def _(solid, contact, r):
     return scaled(0.0, r)
 
 
-@rebound.register(SlitX, SlitY, SlitZ)
+@protocol.rebound.register(*SLITS)
 def _(solid, contact, r, v, chance):
     k = across(solid)
     u = solid.lower_velocity if contact == 0 else solid.upper_velocity
@@ -201,17 +172,17 @@ def between(solid, r):
     return with_item(r, k, min(max(r[k], 0.0), solid.width))
 
 
-@settled.register(SlitX, SlitY, SlitZ)
+@protocol.settled.register(*SLITS)
 def _(solid, r):
     return between(solid, r), True
 
 
-@exposed.register(SlitX, SlitY, SlitZ)
+@protocol.exposed.register(*SLITS)
 def _(solid):
     return True
 
 
-@facing.register(SlitX, SlitY, SlitZ)
+@protocol.facing.register(*SLITS)
 def _(solid, away, r):
     k, none = across(solid), scaled(0.0, r)
     low = r[k] < 0.5 * solid.width
@@ -219,7 +190,7 @@ def _(solid, away, r):
     return distance, with_item(none, k, 1.0 if low else -1.0), 0 if low else 1, none
 
 
-@behind.register(SlitX, SlitY, SlitZ)
+@protocol.nearest_surface.register(*SLITS)
 def _(solid, r):
     k = across(solid)
     low = r[k] < 0.5 * solid.width
@@ -229,24 +200,24 @@ def _(solid, r):
     return abs(clear) if slips > 0.5 else clear, 0 if low else 1, foot
 
 
-@surface_flow.register(SlitX, SlitY, SlitZ)
+@protocol.surface_flow.register(*SLITS)
 def _(solid, term, r):
     return solid.lower_velocity if term == 0 else solid.upper_velocity
 
 
-@height.register(SlitX, SlitY, SlitZ)
+@protocol.distance_above.register(*SLITS)
 def _(solid, term, r):
     h = r[across(solid)]
     return h if term == 0 else solid.width - h
 
 
-@roomy.register(SlitX, SlitY, SlitZ)
+@protocol.is_clear_cell.register(*SLITS)
 def _(solid, r):
     h = r[across(solid)]
     return min(h, solid.width - h) >= 0.5
 
 
-@home.register(SlitX, SlitY, SlitZ)
+@protocol.unit_cell.register(*SLITS)
 def _(solid, r):
     cell, stride = 0, 1
     for k in range(len(r)):
@@ -257,6 +228,6 @@ def _(solid, r):
     return cell
 
 
-@grip.register(SlitX, SlitY, SlitZ)
+@protocol.surface_and_lever.register(*SLITS)
 def _(solid, term, r):
     return term, scaled(0.0, r)

@@ -1,10 +1,8 @@
 """A solid given by its signed distance on a grid."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -12,11 +10,9 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
 from mesokit.case.given.array_file import array_of_contents
 from mesokit.errors import CaseError
+from mesokit.geometry.region import Room
 from mesokit.geometry.samples.distances import Floats, Grid, checked, extent
 from mesokit.geometry.samples.from_file import FromFile
-
-if TYPE_CHECKING:
-    from mesokit.geometry.region import Room
 
 
 @component
@@ -34,6 +30,7 @@ class Sampled(FromFile):
     >>> post = Sampled.from_array(np.hypot(x, y) - 2, file, spacing=0.25, origin=(7, 2))
     """
 
+    per_axis = ("origin", "centre")
     shape: Literal["sampled"] = tag("sampled")
     spacing: float = param(doc="distance between samples", unit="a", gt=0)
     origin: Either[None, float] = param(
@@ -44,7 +41,7 @@ class Sampled(FromFile):
     )
 
     @classmethod
-    def from_array(cls, values: Any, file: str | Path, spacing: float, **others: Any) -> Sampled:
+    def from_array(cls, values: Any, file: str | Path, spacing: float, **others: Any) -> "Sampled":
         """Write an array to a file, which is then the shape's. Raises CaseError.
 
         Parameters
@@ -80,7 +77,7 @@ class Sampled(FromFile):
             raise self.wrong(str(error)) from None
 
     def notes(self, room: Room, samples: Floats) -> Iterator[str]:
-        """What users should know: a solid that reaches over the box."""
+        """Remarks for users: a solid that reaches over the box."""
         values = self.distances(room).values
         origin = self.origin or (0.0,) * values.ndim
         for axis, (n, length) in enumerate(zip(values.shape, room.size, strict=True)):
@@ -101,7 +98,3 @@ class Sampled(FromFile):
             x + 0.5 * (n - 1) * grid.spacing
             for x, n in zip(grid.origin, grid.values.shape, strict=True)
         )
-
-    def vectors(self) -> dict[str, Any]:
-        given = {"origin": self.origin, "centre": self.centre}
-        return {key: value for key, value in given.items() if value is not None}

@@ -119,9 +119,9 @@ def between_plates(solid, r):
 
 @seldom
 def sure_to_miss(solid, r, displacement):
-    """Whether the way from r surely leads into no solid, plates not counted.
+    """Whether a displacement from r surely leads into no solid, plates not counted.
 
-    Both ends are above the plane of the cube that holds r, or the way is shorter than is clear.
+    Both ends are above the plane of the cube that holds r, or it is shorter than what is clear.
     """
     cube, path = np.int64(cube_of(solid, r)), dot(displacement, displacement)
     plane, d = whole(solid.plane_of, cube), len(r)
@@ -174,6 +174,13 @@ def term_clearance(tables, term, r):
 
 
 @scalar
+def near_places(tables, r):
+    """Places in the list of terms near the cell of r, which is in the box."""
+    cell = home_cell(tables, r)
+    return range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1))
+
+
+@scalar
 def nearest_within(tables, away, r):
     """Clearance of r, which is in the box, and the part and term it is measured from.
 
@@ -181,8 +188,7 @@ def nearest_within(tables, away, r):
     clearance, and the term is NO_TERM.
     """
     least, part, term = away, 0, NO_TERM
-    cell = home_cell(tables, r)
-    for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
+    for j in near_places(tables, r):
         candidate = whole(word(tables, NEAR), j)
         c, which = term_clearance(tables, candidate, r)
         if c < least:

@@ -73,7 +73,7 @@ def clear_squares(solids: Solids, bend: float, held: Held | None = None) -> tupl
     """Square of a lower bound of the clearance in small cubes that fill the box, or the cells held,
     x varying fastest, and then 0; and their number to a cell along each axis.
 
-    No flight is farther than `bend` from the straight way to its end. Plates do not count.
+    No flight is farther than `bend` from the straight line to its end. Plates do not count.
     """
     d = solids.dimension
     held = held or whole(solids)
@@ -139,9 +139,7 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     """
     d, size = solids.dimension, solids.size
     middle = corners_of(size) + 0.5
-    terms = np.zeros(len(middle), np.int64)
-    distance, normal = np.zeros(len(middle)), np.zeros(middle.shape)
-    survey.nearest_terms(solids.kernel, solids.pattern, middle, terms, distance, normal)
+    terms, distance, normal = survey.nearest_surfaces(solids.kernel, middle)
     follows = np.array([body.virtual == "extrapolate" for body in solids.bodies])
     sticks = np.array([body.surface.rule != "slip" for body in solids.bodies])
     near = (terms >= 0) & (np.abs(distance) <= 0.5 * math.sqrt(d))

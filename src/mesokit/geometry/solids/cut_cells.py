@@ -33,8 +33,7 @@ def cut_cells(
     each offset start, their numbers in the grid (entries,), and their lower corners there
     (entries, d), as whole numbers; by offset, and then by number."""
     if block is None:
-        found: tuple[Any, Any, Any] = _of_all(_found, solids, cells, None)
-        return found
+        return _of_all(_found, solids, cells, None)
     chosen, offsets = _of_tiles(solids, cells, block)
     _, numbers, corners = _joined(_found, solids, cells, block)
     number = math.prod([OFFSETS[solids.dimension]] * solids.dimension)
@@ -49,8 +48,7 @@ def cut_planes(
     """For each of these the normal (entries, d) and height of the plane that cuts it, its middle in
     the box, its term, and the cell of the box in which the surface lies nearest to its middle."""
     if block is None:
-        found: tuple[Any, ...] = _of_all(_planes, solids, cells, None)
-        return found
+        return _of_all(_planes, solids, cells, None)
     chosen, _ = _of_tiles(solids, cells, block)
     return tuple(column[chosen] for column in _joined(_planes, solids, cells, block))
 
@@ -72,7 +70,6 @@ def _tiles(cells: tuple[int, ...], block: Block) -> Iterator[Block]:
 
 
 def _joined(make: Any, solids: Solids, cells: tuple[int, ...], block: Block) -> list[Any]:
-    """The columns of all tiles of a block."""
     tables = [_of_tile(make, solids, cells, tile) for tile in _tiles(cells, block)]
     return [np.concatenate(columns) for columns in zip(*tables, strict=True)]
 
@@ -104,11 +101,7 @@ def _found(solids: Solids, cells: tuple[int, ...], block: Block | None) -> tuple
         numbers.append(own[chosen])
         corners.append(every[chosen])
         starts.append(starts[-1] + len(chosen))
-    return (
-        np.array(starts, np.int64),
-        np.concatenate(numbers),
-        np.concatenate(corners),
-    )
+    return np.array(starts, np.int64), np.concatenate(numbers), np.concatenate(corners)
 
 
 def _search(solids: Solids, every: Any, origin: tuple[float, ...]) -> Any:
@@ -148,12 +141,6 @@ def _of_period(solids: Solids) -> tuple[Any, Any]:
     return rows, _surveyed(solids, np.concatenate(middles)).heights
 
 
-def shifts_within(d: int) -> Any:
-    """Shifts within an interval over which means are taken (shifts, d): Gauss's points."""
-    side = 0.5 / OFFSETS[d] / math.sqrt(3.0)
-    return np.array(list(itertools.product((-side, side), repeat=d)))
-
-
 def _planes(solids: Solids, cells: tuple[int, ...], block: Block | None) -> tuple[Any, ...]:
     """As `cut_planes`, of the cells that a search finds."""
     starts, _, corners = (_of_all if block is None else _of_tile)(_found, solids, cells, block)
@@ -169,15 +156,19 @@ def _planes(solids: Solids, cells: tuple[int, ...], block: Block | None) -> tupl
         found = _nearest(solids, middles, heights[rows[offset, _alike(solids, corners)]])
     else:
         found = _surveyed(solids, middles)
-    return found.normals, found.heights, middles, found.terms, cell_numbers(solids, found.feet)
+    # The cell of the box that holds each foot, which may be in an image.
+    cell, stride = np.zeros(len(middles), np.int64), 1
+    for k, (length, shut) in enumerate(zip(solids.size, solids.room.closed, strict=True)):
+        index = np.floor(found.feet[:, k]).astype(np.int64)
+        cell += stride * (np.clip(index, 0, length - 1) if shut else index % length)
+        stride *= length
+    return found.normals, found.heights, middles, found.terms, cell
 
 
 def _nearest(solids: Solids, middles: Any, heights: Any) -> survey.Planes:
     """The planes of cells about these middles, whose heights are known."""
-    terms, clearance = np.zeros(len(middles), np.int64), np.zeros(len(middles))
-    normals = np.zeros(middles.shape)
-    near = _reaching(solids, _away(solids.dimension))
-    survey.depths(near, solids.pattern, _away(solids.dimension), middles, terms, clearance, normals)
+    away = _away(solids.dimension)
+    terms, clearance, normals = survey.nearest_surfaces(_reaching(solids, away), middles, away)
     return survey.Planes(normals, heights, terms, middles - clearance[:, None] * normals)
 
 
@@ -187,15 +178,15 @@ def _away(d: int) -> float:
 
 
 def _surveyed(solids: Solids, middles: Any) -> survey.Planes:
-    """The planes of cells about these middles."""
-    shifts = shifts_within(solids.dimension)
+    # Means over the shifts of an interval are taken at Gauss's points.
+    side = 0.5 / OFFSETS[solids.dimension] / math.sqrt(3.0)
+    shifts = np.array(list(itertools.product((-side, side), repeat=solids.dimension)))
     share = np.mean([solids.open_part(middles - x, 1.0, SHIFTED_FINE) for x in shifts], axis=0)
     normals, heights = np.zeros(middles.shape), np.zeros(len(middles))
     terms, feet = np.zeros(len(middles), np.int64), np.zeros(middles.shape)
     away = _away(solids.dimension)
-    near, pattern = _reaching(solids, away), solids.pattern
     found = survey.Planes(normals, heights, terms, feet)
-    survey.planes(near, pattern, away, shifts, middles, share, found)
+    survey.planes(_reaching(solids, away), solids.pattern, away, shifts, middles, share, found)
     slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
     empty = slippery[solids.body_of_term[terms]] | (share <= ROUNDING) | (share >= 1.0 - ROUNDING)
     heights[empty | (terms < 0)] = EVERYWHERE
@@ -206,14 +197,3 @@ def _surveyed(solids: Solids, middles: Any) -> survey.Planes:
 def _reaching(solids: Solids, away: float) -> Any:
     """Lists of what is so near to each cell of the box: once for all tiles."""
     return solids.reaching(away)
-
-
-def cell_numbers(solids: Solids, points: Any) -> Any:
-    """Number of the cell of the box that holds each point, which may be in an image."""
-    number, stride = np.zeros(len(points), np.int64), 1
-    for k, length in enumerate(solids.size):
-        cell = np.floor(points[:, k]).astype(np.int64)
-        cell = np.clip(cell, 0, length - 1) if solids.room.closed[k] else cell % length
-        number += stride * cell
-        stride *= length
-    return number

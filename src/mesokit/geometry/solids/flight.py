@@ -22,8 +22,7 @@ from mesokit.geometry.solids.bodies import (
     REACH,
     SAMPLES,
     SIGNS,
-    STARTS,
-    home_cell,
+    near_places,
     part_clearance,
     part_normal,
     term_clearance,
@@ -33,7 +32,7 @@ from mesokit.scalar.pointer import real, whole, word
 from mesokit.scalar.vector import added_scaled, dot
 
 ON_SURFACE = 1e-11  # cells: a flight that comes so close has arrived
-SHORT_STEP = 1e-3  # cells: what a march dares without looking
+SHORT_STEP = 1e-3  # cells: the least step of a march
 MOST_TRIES = 100
 SAMPLED = primitive.KINDS["sampled"]
 _CONVEX_KINDS = sum(1 << kind for kind, convex in enumerate(primitive.CONVEX) if convex)
@@ -221,7 +220,7 @@ def meeting(tables, term, r, v, a, time):
 
 @scalar
 def may_reach(tables, term, r, path):
-    """Whether a flight may reach a term: asked where that is quicker than to see when it does."""
+    """Whether a flight may reach a term; true where its time is found as quickly."""
     first = whole(word(tables, FIRST), term)
     quick = curves_away(tables, first) or whole(word(tables, KINDS), first) == SAMPLED
     if quick and whole(word(tables, FIRST), term + 1) - first == 1:
@@ -245,11 +244,10 @@ def first_meeting(tables, r, v, a, time, last_part, last_term):
     if path > REACH:
         soonest = REACH / speed
         path, time = REACH, soonest
-    cell = home_cell(tables, r)
     # Terms in the list of the cell where the flight starts: it holds all within REACH, and the
     # flight is no longer. The term of the last hit is left out if the flight departs from it; its
     # clearance there is 0 but for rounding.
-    for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
+    for j in near_places(tables, r):
         candidate = whole(word(tables, NEAR), j)
         if candidate == last_term and departs(tables, last_part, r, v, a, time):
             continue

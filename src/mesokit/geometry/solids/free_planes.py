@@ -5,20 +5,11 @@ Loops run once when a case is built. Points come as rows of an array.
 
 import math
 
-from mesokit.geometry.solids.bodies import (
-    NEAR,
-    NO_TERM,
-    STARTS,
-    home_cell,
-    in_box,
-    nearest,
-    part_normal,
-    term_clearance,
-)
+from mesokit.geometry.solids import bodies
 from mesokit.geometry.solids.flight import curves_away
 from mesokit.kernels.kernel import kernel
 from mesokit.scalar.intrinsics import with_item
-from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.jit import by_type, seldom
 from mesokit.scalar.pointer import whole, word
 from mesokit.scalar.vector import added_scaled, dot, outer, row, scaled
 
@@ -31,15 +22,17 @@ def planes_above(solid, pattern, away, columns, points, planes):
     # convex, its tangent plane is the highest; else columns are probed.
     for i in range(len(points)):
         r = row(points, i, pattern)
-        c, part, term = nearest(solid.tables, r)
+        c, part, term = bodies.nearest(solid.tables, r)
         n = with_item(scaled(0.0, pattern), 0, 1.0)
         top = away
-        if term != NO_TERM:
-            n = part_normal(solid.tables, part, r)
+        if term != bodies.NO_TERM:
+            n = bodies.part_normal(solid.tables, part, r)
             alone = True
-            for j in near_terms(solid.tables, r):
-                other, _ = term_clearance(solid.tables, whole(word(solid.tables, NEAR), j), r)
-                alone &= other >= away or whole(word(solid.tables, NEAR), j) == term
+            for j in bodies.near_places(solid.tables, r):
+                other, _ = bodies.term_clearance(
+                    solid.tables, whole(word(solid.tables, bodies.NEAR), j), r
+                )
+                alone &= other >= away or whole(word(solid.tables, bodies.NEAR), j) == term
             if alone and curves_away(solid.tables, part):
                 top = -c
             else:
@@ -49,19 +42,9 @@ def planes_above(solid, pattern, away, columns, points, planes):
         planes[i, d] = dot(n, r) + top
 
 
-@scalar
-def near_terms(tables, r):
-    """Places in the list of those near the cell of r."""
-    cell = home_cell(tables, r)
-    return range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1))
-
-
 @seldom
 def highest(solid, r, n, away, columns):
-    """Highest solid above r in the direction n, within a ball: no more than found from columns.
-
-    Each is followed down by empty balls about its axis, as far as these contain all of it.
-    """
+    """A bound of the highest solid above r in the direction n, within a ball, from columns."""
     d, side = len(r), 2.0 * away / columns
     half = 0.5 * side * math.sqrt(d - 1.0)
     top = -away
@@ -76,7 +59,7 @@ def highest(solid, r, n, away, columns):
             rest //= columns
         t = away
         while t > top:
-            c, _, _ = nearest(solid.tables, in_box(solid, added_scaled(foot, t, n)))
+            c, _, _ = bodies.nearest(solid.tables, bodies.in_box(solid, added_scaled(foot, t, n)))
             if c <= 1.01 * half:
                 break
             t -= math.sqrt(c * c - half * half)
@@ -87,11 +70,7 @@ def highest(solid, r, n, away, columns):
 @by_type
 def across(n, k):
     """The kth direction at a right angle to n."""
-    return _across_2d if len(n) == 2 else _across_3d
-
-
-def _across_2d(n, k):
-    return (-n[1], n[0])
+    return (lambda n, k: (-n[1], n[0])) if len(n) == 2 else _across_3d
 
 
 def _across_3d(n, k):

@@ -7,26 +7,22 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Collection, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.box import Box
+from mesokit.case.case import Case
 from mesokit.case.component import name_of, show
 from mesokit.errors import CaseError
 from mesokit.geometry.region import Room
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.shape.plates import Plates
-from mesokit.geometry.shape_protocol import Body, closed_axes
+from mesokit.geometry.shape_protocol import Body, Wall, closed_axes
 from mesokit.geometry.solids import survey
 from mesokit.geometry.solids.tables import SolidTables
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
-
-    from mesokit.case.box import Box
-    from mesokit.case.case import Case
-    from mesokit.geometry.shape_protocol import Wall
 
 Floats = NDArray[np.float64]
 THIN, NARROW = 1.5, 3.0  # cells
@@ -36,8 +32,13 @@ Tight = tuple[tuple[float, ...], float]
 FINE = 8  # parts of a cell, along each axis, by which volumes are summed
 
 
+def _places(along: Sequence[Any]) -> Floats:
+    """All places (n, d) with these coordinates along each axis; the last axis varies fastest."""
+    return np.stack(np.meshgrid(*along, indexing="ij"), -1).reshape(-1, len(along))
+
+
 def slit_of(case: Case) -> Plates | None:
-    """The two plates, if these are all walls: the step has a shorter way for them."""
+    """The two plates, if these are all walls: the step has simpler code for them."""
     return case.walls[0] if _is_slit(case.walls) else None
 
 
@@ -184,22 +185,17 @@ class Solids(SolidTables):
 
     def nearest(self, points: Any) -> tuple[NDArray[np.int64], Floats, Floats]:
         """Body (-1: none within a cell), distance (n,) and normal (n, d) at points (n, d)."""
-        points = self._rows(points)
-        terms = np.zeros(len(points), np.int64)
-        distance, normal = np.zeros(len(points)), np.zeros(points.shape)
-        survey.nearest_terms(self.kernel, self.pattern, points, terms, distance, normal)
+        terms, distance, normal = survey.nearest_surfaces(self.kernel, self._rows(points))
         return self._body_of[terms], distance, normal
 
     def depths(self, away: float) -> Callable[[Any], tuple[NDArray[np.int64], Floats, Floats]]:
-        """What tells body (-1: none so near), distance (n,) and normal at points (n, d), exact for
-        distances up to `away`."""
+        """The function of points (n, d) that gives body (-1: none so near), distance (n,) and
+        normal, exact for distances up to `away`."""
         kernel = self.reaching(away)
 
         def look(points: Any) -> tuple[NDArray[np.int64], Floats, Floats]:
-            points = self._rows(points)
-            terms = np.zeros(len(points), np.int64)
-            distance, normal = np.zeros(len(points)), np.zeros(points.shape)
-            survey.depths(kernel, self.pattern, float(away), points, terms, distance, normal)
+            rows = self._rows(points)
+            terms, distance, normal = survey.nearest_surfaces(kernel, rows, float(away))
             return self._body_of[terms], distance, normal
 
         return look
@@ -207,8 +203,7 @@ class Solids(SolidTables):
     @functools.cached_property
     def open_cells(self) -> Floats:
         """Part of each cell of the box that is fluid, one axis after the other."""
-        centres = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in self.size), indexing="ij"), -1)
-        clear = self.distance(centres).reshape(self.size)
+        clear = self.distance(self._centres()).reshape(self.size)
         share = (clear > 0).astype(float)
         mixed = np.argwhere(np.abs(clear) < 0.5 * math.sqrt(self.dimension))
         share[tuple(mixed.T)] = self.open_part(mixed + 0.5, 1.0)
@@ -224,24 +219,17 @@ class Solids(SolidTables):
         for k, n in zip(axes, per_cell, strict=True):
             pieces[k] = n
         fine = [FINE // math.gcd(FINE, n) * n if n <= FINE else n for n in pieces]
-        whole = self._fine(tuple(fine))
+        along = [(np.arange(n * m) + 0.5) / m for n, m in zip(self.size, fine, strict=True)]
+        side = max(1.0 / m for m in fine)
+        whole = np.clip(0.5 + self.distance(_places(along)) / side, 0.0, 1.0)
         shape = [m for k, n in enumerate(self.size) for m in (n * pieces[k], fine[k] // pieces[k])]
         share = whole.reshape(shape).mean(axis=tuple(range(1, 2 * self.dimension, 2)))
         return np.transpose(share.mean(axis=other), np.argsort(np.argsort(axes)))
 
-    def _fine(self, parts: tuple[int, ...]) -> Floats:
-        """Part of each of so many boxes along each axis of a cell that is fluid."""
-        grids = [(np.arange(n * m) + 0.5) / m for n, m in zip(self.size, parts, strict=True)]
-        points = np.stack(np.meshgrid(*grids, indexing="ij"), -1)
-        side = max(1.0 / m for m in parts)
-        clear = self.distance(points).reshape(points.shape[:-1])
-        return np.clip(0.5 + clear / side, 0.0, 1.0)
-
     def open_part(self, centres: NDArray[Any], side: float, fine: int = FINE) -> Floats:
         """Part of cubes of this side that is fluid, from fine^d cubes in each."""
         steps = ((np.arange(fine) + 0.5) / fine - 0.5) * side
-        grid = np.stack(np.meshgrid(*[steps] * self.dimension, indexing="ij"), -1)
-        grid = grid.reshape(-1, self.dimension)
+        grid = _places([steps] * self.dimension)
         share = np.zeros(len(centres))
         for first in range(0, len(centres), 4096):
             some = centres[first : first + 4096]
@@ -262,7 +250,7 @@ class Solids(SolidTables):
             return 0.0
         grids = [(np.arange(4 * n) + 0.5) / 4 for n in self.size]
         grids[axis] = np.zeros(1)
-        start = np.stack(np.meshgrid(*grids, indexing="ij"), -1).reshape(-1, self.dimension)
+        start = _places(grids)
         end = start.copy()
         end[:, axis] = np.nextafter(self.size[axis], 0.0)
         a, b = self.distance(start), self.distance(end)
@@ -312,17 +300,13 @@ class Solids(SolidTables):
         return found
 
     def _centres(self) -> Floats:
-        """The middles of all cells (n, d)."""
-        grids = np.meshgrid(*(np.arange(n) + 0.5 for n in self.size), indexing="ij")
-        return np.stack(grids, -1).reshape(-1, self.dimension)
+        return _places([np.arange(n) + 0.5 for n in self.size])
 
     @functools.cached_property
     def motion(self) -> dict[int, tuple[float, float]]:
         """How fast the surface of each wall moves, by its number, and would move across itself."""
         centres = self._centres()
-        terms = np.zeros(len(centres), np.int64)
-        distance, normal = np.zeros(len(centres)), np.zeros(centres.shape)
-        survey.nearest_terms(self.kernel, self.pattern, centres, terms, distance, normal)
+        terms, distance, normal = survey.nearest_surfaces(self.kernel, centres)
         found: dict[int, tuple[float, float]] = {}
         order = np.argsort(terms, kind="stable")  # all cells of one term follow one another
         starts = np.flatnonzero(np.diff(terms[order], prepend=-2))

@@ -6,14 +6,10 @@ Loops over cells and terms, run once when a case is built. Points come as rows o
 import math
 from typing import Any, NamedTuple
 
-from mesokit.geometry.solids.bodies import (
-    REACH,
-    in_box,
-    nearest,
-    nearest_within,
-    part_normal,
-    term_clearance,
-)
+import numpy as np
+
+from mesokit.geometry.solids import bodies
+from mesokit.geometry.solids.bodies import REACH, Bodies
 from mesokit.geometry.solids.cut_cube import share_beyond
 from mesokit.kernels.later import kernel
 from mesokit.scalar.intrinsics import floor, with_item
@@ -72,7 +68,7 @@ def near_blocks(solid, pattern, away, above, blocks):
         if len(blocks.near) == 0:
             closest = math.inf
             for place in range(first, last):
-                c, _ = term_clearance(solid.tables, above.near[place], r)
+                c, _ = bodies.term_clearance(solid.tables, above.near[place], r)
                 closest = min(closest, c)
             # nothing that was left out of the list is nearer than this
             blocks.least[block] = min(
@@ -84,7 +80,7 @@ def near_blocks(solid, pattern, away, above, blocks):
         found = 0
         for place in range(first, last):
             term = above.near[place]
-            c, _ = term_clearance(solid.tables, term, r)
+            c, _ = bodies.term_clearance(solid.tables, term, r)
             if c <= limit:
                 if len(blocks.near) > 0:
                     blocks.near[blocks.starts[block] + found] = term
@@ -97,20 +93,20 @@ def near_blocks(solid, pattern, away, above, blocks):
 def term_clearances(solid, r, out):
     """Clearance of one place from each term."""
     for term in range(len(out)):
-        out[term], _ = term_clearance(solid.tables, term, r)
+        out[term], _ = bodies.term_clearance(solid.tables, term, r)
 
 
 @kernel
 def clearances(solid, least, pattern, points, out):
     """A lower bound of the distance of each point from the solid, exact within REACH."""
     for i in range(len(points)):
-        out[i] = bound(solid, least, in_box(solid, row(points, i, pattern)), pattern)
+        out[i] = bound(solid, least, bodies.in_box(solid, row(points, i, pattern)), pattern)
 
 
 @seldom
 def bound(solid, least, r, pattern):
     """Clearance of r, in the box; far from all solids, what the middle of its cell lets it have."""
-    c, _, _ = nearest(solid.tables, r)
+    c, _, _ = bodies.nearest(solid.tables, r)
     if c < REACH:
         return c
     cell, stride, away = 0, 1, 0.0
@@ -123,27 +119,25 @@ def bound(solid, least, r, pattern):
     return max(c, least[cell] - math.sqrt(away))
 
 
-@kernel
-def nearest_terms(solid, pattern, points, terms, clearance, normals):
-    """Nearest term (-1: none within reach), clearance and normal at each point."""
-    for i in range(len(points)):
-        r = in_box(solid, row(points, i, pattern))
-        c, part, term = nearest(solid.tables, r)
-        terms[i], clearance[i] = term, c
-        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, pattern)
-        for k in range(len(pattern)):
-            normals[i, k] = n[k]
+def nearest_surfaces(solid: Bodies, points: Any, away: float = REACH) -> tuple[Any, Any, Any]:
+    """Nearest term (-1: none so near), clearance (n,) and normal (n, d) at points (n, d).
+
+    They are exact up to `away` if the lists of the solid reach so far.
+    """
+    terms, clearance = np.zeros(len(points), np.int64), np.zeros(len(points))
+    normals = np.zeros(points.shape)
+    find_nearest(solid, (0.0,) * points.shape[1], away, points, terms, clearance, normals)
+    return terms, clearance, normals
 
 
 @kernel
-def depths(solid, pattern, away, points, terms, clearance, normals):
-    """Nearest term (-1: none so near), clearance and normal at each point, exact up to `away` if
-    the lists of the solid are."""
+def find_nearest(solid, pattern, away, points, terms, clearance, normals):
+    """Loop of `nearest_surfaces`."""
     for i in range(len(points)):
-        r = in_box(solid, row(points, i, pattern))
-        c, part, term = nearest_within(solid.tables, away, r)
+        r = bodies.in_box(solid, row(points, i, pattern))
+        c, part, term = bodies.nearest_within(solid.tables, away, r)
         terms[i], clearance[i] = term, c
-        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, pattern)
+        n = bodies.part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, pattern)
         for k in range(len(pattern)):
             normals[i, k] = n[k]
 
@@ -159,7 +153,7 @@ def cut(solid, pattern, points, half, pieces, out):
     # middle is farther from the surface than its corners. Else its small cubes decide in the same
     # way.
     for i in range(len(points)):
-        c, _, _ = nearest(solid.tables, in_box(solid, row(points, i, pattern)))
+        c, _, _ = bodies.nearest(solid.tables, bodies.in_box(solid, row(points, i, pattern)))
         whole = half * math.sqrt(float(d))
         if abs(c) > whole:
             out[i] = 0
@@ -171,7 +165,7 @@ def cut(solid, pattern, points, half, pieces, out):
                 step = 2.0 * (rest % pieces) + 1.0 - pieces
                 r = with_item(r, k, r[k] + small * step)
                 rest //= pieces
-            c, _, _ = nearest(solid.tables, in_box(solid, r))
+            c, _, _ = bodies.nearest(solid.tables, bodies.in_box(solid, r))
             fluid |= c > -corner
             inside |= c < corner
         out[i] = 1 if fluid and inside else 0
@@ -181,12 +175,12 @@ def cut(solid, pattern, points, half, pieces, out):
 def open_volume(solid, pattern, points, side, out):
     """Part of cubes about the points that is fluid: cubes cut by a plane, the nearest surface."""
     for i in range(len(points)):
-        r = in_box(solid, row(points, i, pattern))
-        c, part, term = nearest(solid.tables, r)
+        r = bodies.in_box(solid, row(points, i, pattern))
+        c, part, term = bodies.nearest(solid.tables, r)
         if term < 0:
             out[i] = 1.0
             continue
-        n = part_normal(solid.tables, part, r)
+        n = bodies.part_normal(solid.tables, part, r)
         out[i] = share_beyond(c / side, n)
 
 
@@ -210,12 +204,12 @@ def planes(solid, pattern, away, shifts, points, open_share, found):
     # so bisection finds this height; 40 halvings of 4 cells leave 4e-12. The share is right in the
     # mean over shifts, not for each shift.
     for i in range(len(points)):
-        r = in_box(solid, row(points, i, pattern))
-        c, part, term = nearest_within(solid.tables, away, r)
+        r = bodies.in_box(solid, row(points, i, pattern))
+        c, part, term = bodies.nearest_within(solid.tables, away, r)
         found.terms[i] = term
         if term < 0:
             continue
-        n = part_normal(solid.tables, part, r)
+        n = bodies.part_normal(solid.tables, part, r)
         low, high = -2.0, 2.0  # no corner of a shifted cube is farther from the middle
         for _ in range(40):
             middle, share = 0.5 * (low + high), 0.0

@@ -10,33 +10,15 @@ from mesokit.errors import CaseError
 from mesokit.geometry.primitive import WIDTH
 from mesokit.geometry.region import Room
 from mesokit.geometry.shape_protocol import Body, Piece
-from mesokit.geometry.solids import survey
-from mesokit.geometry.solids.bodies import (
-    BODY,
-    DIFFUSE,
-    FIRST,
-    KINDS,
-    NEAR,
-    NO_SLIP,
-    NO_TERM,
-    NUMBERS,
-    PIVOT,
-    REACH,
-    SAMPLES,
-    SIGNS,
-    SIZE,
-    SLIP,
-    STARTS,
-    SURFACES,
-    Bodies,
-)
+from mesokit.geometry.solids import bodies, survey
+from mesokit.geometry.solids.bodies import NO_TERM, REACH, Bodies
 from mesokit.geometry.solids.survey import Blocks
 from mesokit.scalar.pointer import address
 
 EDGES = (64, 8, 1)  # cells: blocks, and blocks within them
 MOST_NEAR = 2**31 - 1  # places in a list are 32-bit
 FARTHEST = 8.0  # cells from a surface at which distances are needed
-RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
+RULES = {"no-slip": bodies.NO_SLIP, "slip": bodies.SLIP, "diffuse": bodies.DIFFUSE}
 
 
 class SolidTables:
@@ -49,29 +31,25 @@ class SolidTables:
         self._tables: list[NDArray[Any]] = []
         pieces = [(piece, row) for row, body in enumerate(bodies) for piece in body.pieces]
         self.kernel = self._kernel(pieces)
-        pieces = self._in_reach(pieces)
+        # Most images of pieces are too far from all places in the box to matter.
+        clearance = np.zeros(len(pieces))
+        survey.term_clearances(self.kernel, tuple(0.5 * n for n in self.size), clearance)
+        far = 0.5 * math.hypot(*self.size) + FARTHEST
+        pieces = [piece for piece, c in zip(pieces, clearance, strict=True) if c <= far]
         self.kernel = self._kernel(pieces)
         self._terms = len(pieces)
         self.kernel = self.reaching(REACH)
-
-    def _in_reach(self, pieces: list[tuple[Piece, int]]) -> list[tuple[Piece, int]]:
-        """Those that no place in the box is too far from to matter: most images are not."""
-        middle = tuple(0.5 * length for length in self.size)
-        clearance = np.zeros(len(pieces))
-        survey.term_clearances(self.kernel, middle, clearance)
-        far = 0.5 * math.hypot(*self.size) + FARTHEST
-        return [piece for piece, c in zip(pieces, clearance, strict=True) if c <= far]
 
     def reaching(self, away: float) -> Bodies:
         """Parameters for compiled code, with lists of the terms within `away` of each cell."""
         blocks = self._near_cells(away)
         self.least, starts, near = blocks.least, blocks.starts, blocks.near
         places = self._places.copy()
-        places[STARTS], places[NEAR] = self._keep(starts), self._keep(near)
+        places[bodies.STARTS], places[bodies.NEAR] = self._keep(starts), self._keep(near)
         return self.kernel._replace(tables=self._keep(places, np.int64))
 
     def _near_cells(self, away: float) -> Blocks:
-        """The terms near each cell: fewer and fewer are asked, in blocks that get smaller."""
+        """The terms near each cell, found in smaller and smaller blocks."""
         every = np.arange(self._terms)
         blocks = Blocks(2 * max(self.size), np.array([0, len(every)]), every, np.full(1, np.inf))
         for edge in EDGES:
@@ -80,7 +58,6 @@ class SolidTables:
         return blocks
 
     def _near(self, away: float, above: Blocks, edge: int) -> Blocks:
-        """What may matter in smaller blocks."""
         number = math.prod(-(-length // edge) for length in self.size)
         starts, least = np.zeros(number + 1, np.int64), np.zeros(number)
         counted = Blocks(edge, starts, np.zeros(0, np.int64), least)
@@ -126,19 +103,19 @@ class SolidTables:
         self.pivots = pivots
         surfaces = [self._surface(body) for body in self.bodies]
         tables = {
-            KINDS: self._keep([part.code for part in parts]),
-            SIGNS: self._keep([part.sign for part in parts], float),
-            NUMBERS: self._keep(numbers, float),
-            SAMPLES: self._keep(np.concatenate(samples), float),
-            FIRST: self._keep(np.cumsum([0, *(len(piece.term) for piece, _ in pieces)])),
-            BODY: self._keep(self.body_of_term),
-            PIVOT: self._keep(pivots, float),
-            SURFACES: self._keep(surfaces, float),
+            bodies.KINDS: self._keep([part.code for part in parts]),
+            bodies.SIGNS: self._keep([part.sign for part in parts], float),
+            bodies.NUMBERS: self._keep(numbers, float),
+            bodies.SAMPLES: self._keep(np.concatenate(samples), float),
+            bodies.FIRST: self._keep(np.cumsum([0, *(len(piece.term) for piece, _ in pieces)])),
+            bodies.BODY: self._keep(self.body_of_term),
+            bodies.PIVOT: self._keep(pivots, float),
+            bodies.SURFACES: self._keep(surfaces, float),
         }
-        self._places = np.zeros(SIZE + 3, np.int64)
+        self._places = np.zeros(bodies.SIZE + 3, np.int64)
         for number, place in tables.items():
             self._places[number] = place
-        self._places[SIZE : SIZE + self.dimension] = self.size
+        self._places[bodies.SIZE : bodies.SIZE + self.dimension] = self.size
         size = tuple(float(length) for length in self.size)
         return Bodies(
             size,

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.case import Case
+from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.geometry.solids.none import Nothing
 from mesokit.geometry.solids.solids import Solids, solids_of
-from mesokit.kernels.group import Packing
+from mesokit.kernels.packing import Packing
 from mesokit.loops.threads import Threads
 from mesokit.method.flock.engine.memory import Physics, axes_of, make
 from mesokit.method.flock.engine.step import step

@@ -4,7 +4,7 @@ What the loops over a strip need lies in rows of one array: the compiler then se
 overlap, and does several birds at once.
 """
 
-from mesokit.geometry.protocol import exposed, first_hit, happens, homed, settled, unmet
+from mesokit.geometry.protocol import Nothing, exposed, first_hit, happens, homed, settled, unmet
 from mesokit.geometry.solids.bodies import (
     RULE,
     SLIP,
@@ -13,7 +13,6 @@ from mesokit.geometry.solids.bodies import (
     surface_number,
 )
 from mesokit.geometry.solids.contact import MARGIN
-from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.kernel import inner
 from mesokit.method.flock.engine.memory import HEADING, PULL, STRIP, has_cohesion, past, sum_rows
 from mesokit.method.flock.noise.protocol import turned

@@ -7,13 +7,23 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, share, sums_length
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import untangled
-from mesokit.method.mpcd.engine.domains.messages.field import share_field
+from mesokit.method.mpcd.engine.domains.messages.mpi import finish
+from mesokit.method.mpcd.engine.domains.messages.shared import (
+    FIELD_WORDS,
+    receive_rows,
+    send_rows,
+    shares,
+)
+from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.fixed_point import from_fixed
 from mesokit.scalar.jit import by_type, scalar
+
+FIELDS = 3  # tag of messages
 
 
 class Field(NamedTuple):
@@ -29,14 +39,9 @@ class Field(NamedTuple):
     closed: tuple
 
 
-@by_type
+@where(fluid=lambda fluid: len(field_of(field_of(fluid, "cells"), "field")))
 def fill_field(worker, physics, fluid):
     """Store the sum of every cell if a rule needs its gradient; ends with a barrier."""
-    asked = len(field_of(field_of(fluid, "cells"), "field")) > 0
-    return _fill_field if asked else lambda worker, physics, fluid: None
-
-
-def _fill_field(worker, physics, fluid):
     cells = fluid.cells
     term, width = cells.field.term, sums_length(len(physics.terms))
     batches = (cells.number + LANES - 1) // LANES
@@ -51,6 +56,30 @@ def _fill_field(worker, physics, fluid):
             total += cells.sums[t, cell * width + 1 + term]
         cells.field.values[cell] = from_fixed(total, number, physics.scales[term])
     share_field(worker, fluid)
+    barrier(worker)
+
+
+@where(fluid=shares)
+@stage
+def share_field(worker, fluid):
+    """Exchange the sums of cells at the borders of ranks, for gradients in neighbouring cells."""
+    barrier(worker)
+    # The first thread sends the sums of own cells that lie in halos of partners (`given`), and
+    # stores those of the cells in its own halo (`mine`): gradients need them before the collision.
+    if worker.thread == 0:
+        shared, values = fluid.cells.shared, fluid.cells.field.values
+        for j in range(len(shared.given)):
+            shared.field_out[j, 0] = values[shared.given[j]]
+        n = receive_rows(shared, 0, shared.field_in, shared.starts, FIELDS)
+        for p in range(len(shared.ranks)):
+            first, number = (
+                shared.given_starts[p],
+                shared.given_starts[p + 1] - shared.given_starts[p],
+            )
+            n = send_rows(shared, n, shared.field_out, first, number, p, FIELDS, FIELD_WORDS)
+        finish(shared.post, n)
+        for j in range(len(shared.mine)):
+            values[shared.mine[j]] = shared.field_in[j, 0]
     barrier(worker)
 
 

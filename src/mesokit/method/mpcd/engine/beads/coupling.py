@@ -15,11 +15,12 @@ from mesokit.method.mpcd.collision.protocol import Cell, contribute, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.engine.beads.state import PRESENT, bead_of, mass_of, number_of
 from mesokit.method.mpcd.engine.cpu.collide import as_many, draw_with_care
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import asks
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import needs_energy
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.method.mpcd.engine.cpu.strips.terms import read_sums, sums_of_cell
 from mesokit.method.mpcd.engine.domains.messages.shared import key_of
 from mesokit.method.mpcd.engine.embedded.state import collides
+from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.thermostat.protocol import guess
 from mesokit.scalar.gamma import gamma_number
 from mesokit.scalar.jit import by_type, scalar
@@ -30,16 +31,6 @@ from mesokit.scalar.vector import added, dot, scaled
 NO_BEAD = -1
 
 
-@by_type
-def join_beads(worker, now, physics, fluid, beads):
-    """Coefficients for cells with beads, from sums that `collide` is about to clear."""
-    if not collides(beads):
-        return lambda worker, now, physics, fluid, beads: None
-    return lambda worker, now, physics, fluid, beads: _join(
-        worker, now, physics, fluid.cells, beads
-    )
-
-
 @scalar
 def cells_of_thread(worker, number):
     """First and last + 1 of the cells of a thread in `collide`."""
@@ -47,8 +38,11 @@ def cells_of_thread(worker, number):
     return first * LANES, min(last * LANES, number)
 
 
+@where(beads=collides)
 @stage
-def _join(worker, now, physics, cells, beads):
+def join_beads(worker, now, physics, fluid, beads):
+    """Coefficients for cells with beads, from sums that `collide` is about to clear."""
+    cells = fluid.cells
     first, last = cells_of_thread(worker, cells.number)
     present = number_of(beads.halo, len(beads.cell), PRESENT)
     # Link the beads of each cell. Every thread reads all beads, but links only cells of its own
@@ -106,18 +100,10 @@ def parts_of(given, zero):
     return lambda given, zero: (given[:d], given[d], given[rest:])
 
 
-@by_type
+@where("total", solvent=len)
 def with_random_solvent(solvent, beads, physics, counter, cell, total):
     """The sums with as many particles as a cell holds, whose momentum is drawn from a Maxwellian;
     nothing where there is a fluid."""
-    return _with_random_solvent if len(solvent) else _as_they_are
-
-
-def _as_they_are(solvent, beads, physics, counter, cell, total):
-    return total
-
-
-def _with_random_solvent(solvent, beads, physics, counter, cell, total):
     mean, mass_of_one = solvent
     n, mass, momentum, energy, own = total
     zero = physics.zero
@@ -127,7 +113,7 @@ def _with_random_solvent(solvent, beads, physics, counter, cell, total):
         a, b, e, f = words(counter, CELL_VIRTUAL, cell, 0)
         v = scaled(math.sqrt(physics.kT / m), normals(zero, a, b, e, f))
         n, mass, momentum = n + number, mass + m, added(momentum, scaled(m, v))
-        if asks(physics.energy):
+        if needs_energy(physics.energy):
             inner = gamma_number(float(d * (number - 1)), counter, VIRTUAL_NUMBER, cell)
             energy += m * dot(v, v) + 2.0 * physics.kT * inner
         key = (FIRST_BEAD + len(beads.cell) + np.int64(cell), 0)
@@ -136,15 +122,9 @@ def _with_random_solvent(solvent, beads, physics, counter, cell, total):
     return n, mass, momentum, energy, own
 
 
-@by_type
+@where(beads=collides)
 def answer_beads(worker, now, physics, fluid, beads):
     """Replace the coefficients that `collide` found without beads."""
-    if not collides(beads):
-        return lambda worker, now, physics, fluid, beads: None
-    return _put_answers
-
-
-def _put_answers(worker, now, physics, fluid, beads):
     cells = fluid.cells
     first, last = cells_of_thread(worker, cells.number)
     needed = physics.coefficients

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
+from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.intrinsics import floor
-from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 
@@ -25,7 +26,7 @@ class External(NamedTuple):
 
 
 def external_of(given: Solutes, d: int) -> tuple[External, ...]:
-    """Of all pulls, traps and fields together; () where there is none."""
+    """The sum of all pulls, traps and fields; () where there is none."""
     if not (given.pulls or given.traps or given.magnetic):
         return ()
     n = given.beads
@@ -46,22 +47,15 @@ def external_of(given: Solutes, d: int) -> tuple[External, ...]:
 
 
 def external_energy(external: tuple[External, ...], places: NDArray[np.float64]) -> float:
-    """Of beads (n, d) in their traps; pulls have none, as they do not let go."""
-    return sum(
-        float(
-            (0.5 * one.stiffness * ((places - one.centre.reshape(places.shape)) ** 2).sum(1)).sum()
-        )
-        for one in external
-    )
+    """Energy of beads (n, d) in their traps; pulls, which do not end, have none."""
+    squares = [((places - one.centre.reshape(places.shape)) ** 2).sum(1) for one in external]
+    each = zip(external, squares, strict=True)
+    return sum(float((0.5 * one.stiffness * square).sum()) for one, square in each)
 
 
-@by_type
+@where("force", external=len)
 def from_outside(external, force, i, r):
     """The force on bead i at r, and what acts from outside."""
-    return _from_outside if len(external) else lambda external, force, i, r: force
-
-
-def _from_outside(external, force, i, r):
     (given,) = external
     start = np.uint64(i * len(r))
     away = added_scaled(load_values(given.centre, start, r), -1.0, r)
@@ -83,22 +77,12 @@ def turned_about(turns, time, v):
     return added(added_scaled(scaled(cosine, v), sine, across), along)
 
 
-@by_type
+@where("v", external=len)
 def turned_by_field(external, time, i, v):
     """The velocity of bead i after a time in a magnetic field."""
-    if len(external) == 0:
-        return lambda external, time, i, v: v
-    return _turned_plane if len(v) == 2 else _turned
-
-
-def _turned_plane(external, time, i, v):
     (given,) = external
-    turns = (0.0, 0.0, given.turns[3 * i + 2])
-    x, y, _ = turned_about(turns, time, (v[0], v[1], 0.0))
-    return x, y
-
-
-def _turned(external, time, i, v):
-    (given,) = external
+    if len(v) == 2:  # the literal length picks one of the two when it is compiled
+        x, y, _ = turned_about((0.0, 0.0, given.turns[3 * i + 2]), time, (v[0], v[1], 0.0))
+        return x, y
     turns = (given.turns[3 * i], given.turns[3 * i + 1], given.turns[3 * i + 2])
     return turned_about(turns, time, v)

@@ -12,40 +12,27 @@ from mesokit.kernels.part import stage
 from mesokit.loops.layout import record_length, share
 from mesokit.loops.threads import Worker
 from mesokit.method.mpcd.collision.protocol import collide, contribute
+from mesokit.method.mpcd.engine.beads import state
 from mesokit.method.mpcd.engine.beads.moving import MovingBeads
-from mesokit.method.mpcd.engine.beads.state import (
-    GROUP,
-    OWN,
-    bead_of,
-    load_folded,
-    mass_of,
-    number_of,
-    store_velocity,
-)
 from mesokit.method.mpcd.engine.beads.verlet import verlet
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.stress import flux
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.method.mpcd.engine.domains.beads.halo import assign_beads
+from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.fixed_point import add_quanta
-from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import FIRST_BEAD
 from mesokit.scalar.vector import added, dot, scaled
 
 LEAST = 4  # groups for a thread: fewer do not pay for the gate
 
 
-@by_type
-def move_solutes(worker, now, physics, fluid, beads):
-    """Do what the flags ask: the pending collision, the flight, the cells (see `stream`)."""
-    if len(beads) == 0:
-        return lambda worker, now, physics, fluid, beads: None
-    return lambda worker, now, physics, fluid, beads: _move(worker, now, physics, fluid, beads)
-
-
+@where(beads=len)
 @stage
-def _move(worker, now, physics, fluid, beads):
+def move_solutes(worker, now, physics, fluid, beads):
+    """Do the stages that the flags have: the pending collision, the flight, the cells."""
     together = threads_for(worker, beads)
     first, last = beads_of_thread(worker, together, beads)
     measured, halo = now.flags & MEASURE_STRESS, beads.halo
@@ -55,7 +42,7 @@ def _move(worker, now, physics, fluid, beads):
         # Beads take the coefficients of their cells, like particles of the fluid. Each bead belongs
         # to one thread.
         for n in range(first, last):
-            i = bead_of(halo, OWN, n)
+            i = state.bead_of(halo, state.OWN, n)
             collide_bead(beads, i, physics, box, now.old, fluid.cells.coefficients)
         if measured and not now.flags & STREAM:
             for n in range(first, last):
@@ -73,46 +60,48 @@ def _move(worker, now, physics, fluid, beads):
             for n in range(first, last):
                 add_bead_flux(beads, n, physics, now.box, now.grid.shift, 0)
         for n in range(first, last):
-            bin_bead(beads, bead_of(halo, OWN, n), physics, now)
+            bin_bead(beads, state.bead_of(halo, state.OWN, n), physics, now)
 
 
 @scalar
 def threads_for(worker, beads):
     """The number of threads that move the beads: all, or one if there are few beads."""
-    number = number_of(beads.halo, len(beads.cell), OWN)
-    groups = (number + GROUP - 1) // GROUP
+    number = state.number_of(beads.halo, len(beads.cell), state.OWN)
+    groups = (number + state.GROUP - 1) // state.GROUP
     return worker.threads if groups >= LEAST * worker.threads else 1
 
 
 @scalar
 def beads_of_thread(worker, together, beads):
     """First and last + 1 of the beads that a thread moves."""
-    number = number_of(beads.halo, len(beads.cell), OWN)
-    groups = (number + GROUP - 1) // GROUP
+    number = state.number_of(beads.halo, len(beads.cell), state.OWN)
+    groups = (number + state.GROUP - 1) // state.GROUP
     first, last = share(groups, min(worker.thread, together), together)
-    return first * GROUP, (min(last * GROUP, number) if worker.thread < together else first * GROUP)
+    return first * state.GROUP, (
+        min(last * state.GROUP, number) if worker.thread < together else first * state.GROUP
+    )
 
 
 @scalar
 def collide_bead(beads, i, physics, box, grid, coefficients):
     """Velocity after the collision in its cell."""
-    r, v, boxes = load_folded(beads, i, box, grid.shift)
+    r, v, boxes = state.load_folded(beads, i, box, grid.shift)
     start = np.uint64(beads.cell[i]) * np.uint64(record_length(len(physics.coefficients)))
     needed = load_values(coefficients, start, physics.coefficients)
     v = collide(physics.rule, needed, v, in_cell(r, grid))
     _, v = unfold(box, r, v, boxes)
-    store_velocity(beads, i, v)
+    state.store_velocity(beads, i, v)
 
 
 @scalar
 def bin_bead(beads, i, physics, now):
     """The cell of a bead, and what it adds to the sums of that cell."""
-    r, v, boxes = load_folded(beads, i, now.box, now.grid.shift)
+    r, v, boxes = state.load_folded(beads, i, now.box, now.grid.shift)
     beads.cell[i] = cell_index(r, now.grid)
-    key, m = (FIRST_BEAD + i, 0), mass_of(beads, i)
+    key, m = (FIRST_BEAD + i, 0), state.mass_of(beads, i)
     kept, own = contribute(physics.rule, now.counter, key, m, v, in_cell(r, now.grid))
     _, kept = unfold(now.box, r, kept, boxes)
-    store_velocity(beads, i, kept)
+    state.store_velocity(beads, i, kept)
     terms = scaled(m, v) + (m * dot(v, v),) + own
     store_values(beads.given, np.uint64(i * len(terms)), terms)
 
@@ -123,8 +112,8 @@ def add_bead_flux(beads, n, physics, box, shift, when):
 
     `when` is 0 before a collision, 1 after it.
     """
-    tensor, i = beads.tensor[when, n // GROUP], bead_of(beads.halo, OWN, n)
-    r, v, _ = load_folded(beads, i, box, scaled(0.0, shift))
+    tensor, i = beads.tensor[when, n // state.GROUP], state.bead_of(beads.halo, state.OWN, n)
+    r, v, _ = state.load_folded(beads, i, box, scaled(0.0, shift))
     place, u, _ = fold(box, r, v, shift)
-    carried = flux(mass_of(beads, i), peculiar(box, r, v), u, added(place, shift))
+    carried = flux(state.mass_of(beads, i), peculiar(box, r, v), u, added(place, shift))
     add_quanta(tensor, physics.stress_scale, carried)

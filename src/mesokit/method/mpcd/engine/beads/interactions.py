@@ -7,14 +7,19 @@ the virial none, as it goes to memory.
 
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
 from mesokit.geometry.protocol import facing
-from mesokit.method.mpcd.engine.beads.broken_bonds import note_broken
 from mesokit.method.mpcd.engine.cpu.bounce import add_recoil
 from mesokit.method.mpcd.engine.cpu.stress import add_product
 from mesokit.potential.angle import bend
 from mesokit.potential.protocol import breaks, central
-from mesokit.scalar.jit import generic
+from mesokit.scalar.jit import generic, scalar
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
+
+STEP, FIRST, SECOND = 0, 1, 2  # what is noted, of each thread: its step, or 0, and two beads
 
 
 class BeadForce(NamedTuple):
@@ -130,3 +135,31 @@ def _(asked, total, potential, before, after, role):
 @of_wall.register(Virial)
 def _(asked, total, potential, near_wall, r):
     return total
+
+
+@scalar
+def note_broken(faults, step, one, other):
+    """Note step and beads of the first bond that is longer than it can be (seldom called)."""
+    step, one = np.int64(step), np.int64(one)
+    earlier = faults[STEP] == 0 or step < faults[STEP]
+    if earlier or (step == faults[STEP] and one < faults[FIRST]):
+        faults[STEP], faults[FIRST], faults[SECOND] = step, one, np.int64(other)
+
+
+def first_fault(faults: NDArray[np.int64]) -> tuple[int, int, int] | None:
+    """The first of what the threads noted in the last steps: step, and two numbers; else None."""
+    noted = faults[faults[:, STEP] > 0]
+    return min(map(tuple, noted[:, :3].tolist()), default=None)
+
+
+def refuse_broken(faults: NDArray[np.int64], longest: float, name: str, advice: str) -> None:
+    """Raise RunError if a bond of those, as they are called, was broken in the last steps.
+
+    `faults` has a row for each thread, `longest` is what no bond can reach.
+    """
+    if found := first_fault(faults):
+        step, first, second = found
+        raise RunError(
+            f"step {step}: the bond of {name} {first} and {second} is longer than the "
+            f"{longest:g} that it can be; {advice}"
+        )

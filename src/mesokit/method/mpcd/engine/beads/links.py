@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 from mesokit.method.mpcd.engine.beads.interactions import Virial, of_three, of_two
 from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, load_bead, store_bead
+from mesokit.method.mpcd.engine.where import where
 from mesokit.potential.angle import bend
 from mesokit.potential.protocol import breaks, central
-from mesokit.scalar.jit import by_type, generic, scalar
+from mesokit.scalar.jit import generic, scalar
 from mesokit.scalar.pointer import word
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
@@ -48,24 +49,16 @@ def linked(molecule, at, zero):
     return bead_at(word(molecule.links, at), zero)
 
 
-@by_type
+@where(angle=len)
 def of_angle(angle, asked, a, b, c, lanes, zero):
     """Apply `asked` to the angle of beads a, b and c, if there is a potential."""
-    return _of_angle if len(angle) else lambda *_: None
-
-
-def _of_angle(angle, asked, a, b, c, lanes, zero):
     (potential,) = angle
     of_angled(asked, potential, a, b, c, lanes, zero)
 
 
-@by_type
+@where(pair=len)
 def of_pair(pair, asked, a, b, lanes, zero):
     """Apply `asked` to the pair of beads a and b, if there is a potential."""
-    return _of_pair if len(pair) else lambda *_: None
-
-
-def _of_pair(pair, asked, a, b, lanes, zero):
     (potential,) = pair
     of_linked(asked, potential, a, b, lanes, zero)
 

@@ -4,24 +4,23 @@ Beads fly straight between two kicks, and bounce off solids there; dimers with h
 moved in closed form instead.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.geometry.protocol import touches
-from mesokit.geometry.solids.none import Nothing
+from mesokit.geometry.protocol import Nothing, touches
 from mesokit.loops.layout import LANES, SCRATCH_ROW
 from mesokit.loops.threads import Worker
-from mesokit.method.mpcd.engine.beads.broken_bonds import note_broken
-from mesokit.method.mpcd.engine.beads.interactions import Virial
+from mesokit.method.mpcd.engine.beads.interactions import Virial, note_broken
 from mesokit.method.mpcd.engine.beads.links import Kick, each_link
 from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, load_bead, store_bead
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, FluidMemory
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW, forget
-from mesokit.method.mpcd.engine.cpu.physics import field_of, kind_of_solid
+from mesokit.method.mpcd.engine.cpu.physics import field_of, has_solid, kind_of_solid
 from mesokit.method.mpcd.engine.cpu.stages import clear_of
 from mesokit.method.mpcd.engine.cpu.stress import add_product
+from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.method.mpcd.molecule import Dimers
@@ -30,6 +29,11 @@ from mesokit.potential.protocol import breaks
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.pointer import word
 from mesokit.scalar.vector import added, added_scaled, chosen, dot, scaled
+
+
+def has_force(physics: Any) -> bool:
+    """Whether there is a body force, from the numba type of `Physics`."""
+    return field_of(physics, "field").instance_class is not Zero
 
 
 class Batch(NamedTuple):
@@ -64,10 +68,9 @@ def fly_molecules(worker, now, physics, fluid, batch):
 def _fly_springs(worker, now, physics, fluid, batch):
     for k in range(physics.molecule.beads):
         bead = fluid.scratch.beads[worker.thread][bead_at(k, physics.zero)]
-        remember(physics.solid, bead, physics.zero)
-    verlet(
-        MovingMolecules(worker, fluid, batch, now.flags), now, physics, physics.molecule.substeps
-    )
+        remember(physics, bead)
+    moving = MovingMolecules(worker, fluid, batch, now.flags)
+    verlet(moving, now, physics, physics.molecule.substeps)
 
 
 @drift.register(MovingMolecules)
@@ -91,15 +94,9 @@ def _(moving, step, box, physics, time):
         accelerate_bead(physics, time, work[bead_at(k, zero)])
 
 
-@by_type
+@where(physics=has_force)
 def accelerate_bead(physics, time, bead):
     """The body force, if there is one."""
-    if field_of(physics, "field").instance_class is Zero:
-        return lambda physics, time, bead: None
-    return _accelerate
-
-
-def _accelerate(physics, time, bead):
     zero = physics.zero
     for i in range(WIDTH):
         r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, len(zero), zero)
@@ -143,15 +140,11 @@ def _exact_virial(physics, a, b, lanes, tensor):
         add_product(tensor, scale, exact.rates, rate, rate)
 
 
-@by_type
-def remember(solid, bead, zero):
-    """Keep the places from which the timestep started, where solids ask for them."""
-    return (lambda *_: None) if solid.instance_class is Nothing else _remember
-
-
-def _remember(solid, bead, zero):
+@where(physics=has_solid)
+def remember(physics, bead):
+    """Keep the places from which the timestep started, for the search of solids."""
     for i in range(WIDTH):
-        store_bead(bead, i, 2 * len(zero), load_bead(bead, i, 0, zero))
+        store_bead(bead, i, 2 * len(physics.zero), load_bead(bead, i, 0, physics.zero))
 
 
 @by_type

@@ -2,26 +2,15 @@
 
 from typing import Any, NamedTuple
 
-from mesokit.geometry.solids.none import Nothing
+from mesokit.geometry.protocol import Nothing
 from mesokit.loops.threads import Worker, barrier
+from mesokit.method.mpcd.engine.beads import state
 from mesokit.method.mpcd.engine.beads.external import from_outside, turned_by_field
 from mesokit.method.mpcd.engine.beads.interactions import BeadForce, Virial
 from mesokit.method.mpcd.engine.beads.neighbours import refresh
-from mesokit.method.mpcd.engine.beads.state import (
-    GROUP,
-    OWN,
-    Beads,
-    bead_of,
-    inverse_mass_of,
-    load_place,
-    load_velocity,
-    mass_of,
-    store_place,
-    store_velocity,
-)
 from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick
-from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid, momentum_scale
+from mesokit.method.mpcd.engine.cpu.physics import field_of, kind_of_solid, momentum_scale
 from mesokit.method.mpcd.engine.domains.beads.halo import update_copies
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration
@@ -34,7 +23,7 @@ class MovingBeads(NamedTuple):
     """The beads from the first to that before the last, and the thread that moves them."""
 
     worker: Worker
-    beads: Beads
+    beads: state.Beads
     first: int
     last: int
     impulse: Any
@@ -45,7 +34,7 @@ class MovingBeads(NamedTuple):
 def _(moving, counter, physics, time):
     barrier(moving.worker)  # all threads have read the places at the start of the sub-step
     for n in range(moving.first, moving.last):
-        i = bead_of(moving.beads.halo, OWN, n)
+        i = state.bead_of(moving.beads.halo, state.OWN, n)
         drift_bead(moving.beads, i, counter, physics, time, moving.impulse)
 
 
@@ -56,15 +45,15 @@ def drift_bead(beads, i, counter, physics, time, impulse):
 
 
 def _drift(beads, i, counter, physics, time, impulse):
-    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
-    store_place(beads, i, added_scaled(r, time, v))
+    r, v = state.load_place(beads, i, physics.zero), state.load_velocity(beads, i, physics.zero)
+    state.store_place(beads, i, added_scaled(r, time, v))
 
 
 def _drift_among_solids(beads, i, counter, physics, time, impulse):
-    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
-    r, v = flown(physics, time, counter, FIRST_BEAD + i, mass_of(beads, i), r, v, impulse)
-    store_place(beads, i, r)
-    store_velocity(beads, i, v)
+    r, v = state.load_place(beads, i, physics.zero), state.load_velocity(beads, i, physics.zero)
+    r, v = flown(physics, time, counter, FIRST_BEAD + i, state.mass_of(beads, i), r, v, impulse)
+    state.store_place(beads, i, r)
+    state.store_velocity(beads, i, v)
 
 
 @kick.register(MovingBeads)
@@ -75,39 +64,38 @@ def _(moving, step, box, physics, time):
     refresh(worker, beads.neighbours, beads.halo, box, beads.r, zero)
     if moving.measured:
         for n in range(moving.first, moving.last):
-            i = bead_of(beads.halo, OWN, n)
-            virial = Virial(time, beads.tensor[2, n // GROUP], physics.stress_scale)
-            each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
+            i = state.bead_of(beads.halo, state.OWN, n)
+            virial = Virial(time, beads.tensor[2, n // state.GROUP], physics.stress_scale)
+            each_on_bead(virial, (), beads, i, state.load_place(beads, i, zero), box)
     scale, faults = momentum_scale(physics), beads.faults[worker.thread]
     force = BeadForce(time, moving.impulse, scale, step, faults)
     for n in range(moving.first, moving.last):
-        kick_bead(force, beads, bead_of(beads.halo, OWN, n), box, physics, time)
+        kick_bead(force, beads, state.bead_of(beads.halo, state.OWN, n), box, physics, time)
 
 
 @by_type
 def kick_bead(asked, beads, i, box, physics, time):
     """Change of the velocity of a bead by the forces on it."""
-    external = beads.types[beads.fields.index("external")]
-    return _kick_from_outside if len(external) else _kick
+    return _kick_from_outside if len(field_of(beads, "external")) else _kick
 
 
 def _kick(asked, beads, i, box, physics, time):
-    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
+    r, v = state.load_place(beads, i, physics.zero), state.load_velocity(beads, i, physics.zero)
     force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
-    v = added_scaled(v, time * inverse_mass_of(beads, i), force)
-    store_velocity(beads, i, accelerated(physics.field, time, r, v))
+    v = added_scaled(v, time * state.inverse_mass_of(beads, i), force)
+    state.store_velocity(beads, i, accelerated(physics.field, time, r, v))
 
 
 def _kick_from_outside(asked, beads, i, box, physics, time):
     """Half of the change, a turn in the magnetic field, and the other half (Boris 1970)."""
-    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
+    r, v = state.load_place(beads, i, physics.zero), state.load_velocity(beads, i, physics.zero)
     force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
     force = from_outside(beads.external, force, i, r)
     half = 0.5 * time
-    v = added_scaled(v, half * inverse_mass_of(beads, i), force)
+    v = added_scaled(v, half * state.inverse_mass_of(beads, i), force)
     v = turned_by_field(beads.external, time, i, accelerated(physics.field, half, r, v))
-    v = added_scaled(v, half * inverse_mass_of(beads, i), force)
-    store_velocity(beads, i, accelerated(physics.field, half, r, v))
+    v = added_scaled(v, half * state.inverse_mass_of(beads, i), force)
+    state.store_velocity(beads, i, accelerated(physics.field, half, r, v))
 
 
 @by_type

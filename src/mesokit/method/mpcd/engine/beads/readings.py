@@ -9,9 +9,8 @@ from mesokit.case.box import fold
 from mesokit.errors import RunError
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.threads import Worker
-from mesokit.method.mpcd.engine.beads.broken_bonds import first_broken, refuse_broken
 from mesokit.method.mpcd.engine.beads.external import external_energy
-from mesokit.method.mpcd.engine.beads.interactions import Energy
+from mesokit.method.mpcd.engine.beads.interactions import Energy, first_fault, refuse_broken
 from mesokit.method.mpcd.engine.beads.neighbours import MADE, refresh
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
@@ -54,24 +53,21 @@ class SoluteReadings:
         """The same of beads with these places and velocities."""
         r, v = r.copy(), v.copy()
         boxes = np.zeros(self.shape)
-        rows = r.reshape(-1), v.reshape(-1), boxes.reshape(-1)
+        rows = (array.reshape(-1) for array in (r, v, boxes))
         fold_beads(self.memory.box, *rows, self.memory.physics.zero)
         return r, v, boxes.astype(np.int32)
 
     def whole(self) -> Floats:
         """Places (beads, d) with the first bead of each molecule in the box."""
-        first = self.first_beads()
-        places, _, _ = self.folded()
-        return places[first] + (self.places - self.places[first])
-
-    def first_beads(self) -> NDArray[np.int64]:
-        """The first bead of the molecule of each bead."""
-        found = []
-        for kind, polymer in enumerate(self.given.polymers):
-            start = self.given.first_bead(kind)
-            starts = start + polymer.length * np.arange(polymer.number)
-            found.append(np.repeat(starts, polymer.length))
-        return np.concatenate(found)
+        starts = [
+            np.repeat(
+                self.given.first_bead(kind) + polymer.length * np.arange(polymer.number),
+                polymer.length,
+            )
+            for kind, polymer in enumerate(self.given.polymers)
+        ]
+        first = np.concatenate(starts)  # the first bead of the molecule of each bead
+        return self.folded()[0][first] + (self.places - self.places[first])
 
     def masses(self) -> Floats:
         """Masses (beads,)."""
@@ -121,10 +117,9 @@ class SoluteReadings:
     def check(self) -> None:
         """That no bond was broken, no bead lost or too fast in the last steps. Raises RunError."""
         substeps = self.state_of.potentials.substeps
-        first = first_broken(self.state_of.faults)
-        if first is not None:
+        if found := first_fault(self.state_of.faults):
             advice = f"take more sub-steps than {substeps} (solutes.substeps), or a stiffer bond"
-            bond = self.given.bond_of(int(self.given.kinds()[first - 1]))
+            bond = self.given.bond_of(int(self.given.kinds()[found[1] - 1]))
             assert bond is not None
             refuse_broken(self.state_of.faults, bond.longest, "beads", advice)
         for embedded in self.state_of.embedded:
@@ -151,9 +146,8 @@ def fold_beads(box, r, v, boxes, zero):
     d, none = len(zero), scaled(0.0, zero)
     for i in range(len(r) // d):
         at = np.uint64(i * d)
-        place, velocity, crossed = fold(
-            box, load_values(r, at, zero), load_values(v, at, zero), none
-        )
+        old, u = load_values(r, at, zero), load_values(v, at, zero)
+        place, velocity, crossed = fold(box, old, u, none)
         store_values(r, at, place)
         store_values(v, at, velocity)
         store_values(boxes, at, crossed)
@@ -162,9 +156,8 @@ def fold_beads(box, r, v, boxes, zero):
 @kernel
 def energy_of(worker, beads, box, zero):
     """Potential energy of all beads."""
-    number, total = len(beads.cell), (0.0,)
+    total = (0.0,)
     refresh(worker, beads.neighbours, (), box, beads.r, zero)
-    for i in range(number):
+    for i in range(len(beads.cell)):
         total = each_on_bead(Energy(), total, beads, i, load_place(beads, i, zero), box)
-    (energy,) = total
-    return energy
+    return total[0]

@@ -6,7 +6,9 @@ import numpy as np
 from numba import types
 
 from mesokit.case.box import fold
+from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
+from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.jit import by_type, scalar
 
 GROUP = 64  # beads whose part in the stress is added up by itself
@@ -77,27 +79,28 @@ class KindsOfLinks(NamedTuple):
 OWN, AROUND, PRESENT = 0, 1, 2
 
 
-@by_type
+def has_halo(beads: Any) -> bool:
+    """Whether ranks share beads, from the numba type of `Beads` or of ()."""
+    return len(beads) > 0 and len(field_of(beads, "halo")) > 0
+
+
+@where("every", halo=len)
 def number_of(halo, every, which):
     """Number of beads that a rank owns, or has with copies, or in its cells (`which`); all beads
     without ranks."""
-    if len(halo) == 0:
-        return lambda halo, every, which: every
-    return lambda halo, every, which: halo.count[which]
+    return halo.count[which]
 
 
-@by_type
+@where("n", halo=len)
 def bead_of(halo, which, n):
     """Id of the nth of these."""
-    if len(halo) == 0:
-        return lambda halo, which, n: n
-    return lambda halo, which, n: halo.numbers[which, n]
+    return halo.numbers[which, n]
 
 
 @by_type
 def mass_of(beads, i):
     """Mass of bead i."""
-    if beads.types[beads.fields.index("mass")] == types.float64:
+    if field_of(beads, "mass") == types.float64:
         return lambda beads, i: beads.mass
     return lambda beads, i: beads.mass[i]
 
@@ -105,7 +108,7 @@ def mass_of(beads, i):
 @by_type
 def inverse_mass_of(beads, i):
     """One over the mass of bead i."""
-    if beads.types[beads.fields.index("mass")] == types.float64:
+    if field_of(beads, "mass") == types.float64:
         return lambda beads, i: beads.potentials.inverse_mass
     return lambda beads, i: 1.0 / beads.mass[i]
 

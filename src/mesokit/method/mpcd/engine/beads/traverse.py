@@ -8,29 +8,28 @@ differ: with one potential for all nothing is looked up, and none of that is com
 from mesokit.method.mpcd.engine.beads.interactions import of_three, of_two, of_wall
 from mesokit.method.mpcd.engine.beads.neighbours import CROWDED, apart
 from mesokit.method.mpcd.engine.beads.state import AROUND, bead_of, load_place, number_of
+from mesokit.method.mpcd.engine.where import where
 from mesokit.potential.several import Several, potential_at, row_of
 from mesokit.scalar.jit import by_type, elementwise, scalar
 from mesokit.scalar.vector import added, added_scaled
 
 
-@by_type
+@where("0", kinds=len)
 def kind_of_bond(kinds, n):
     """The kind of solutes that entry n of `Beads.bonds` belongs to."""
-    return (lambda kinds, n: kinds.bonds[n]) if len(kinds) else (lambda kinds, n: 0)
+    return kinds.bonds[n]
 
 
-@by_type
+@where("0", kinds=len)
 def kind_of_angle(kinds, n):
     """The same of entry n of `Beads.angles`."""
-    return (lambda kinds, n: kinds.angles[n]) if len(kinds) else (lambda kinds, n: 0)
+    return kinds.angles[n]
 
 
-@by_type
+@where("0", kinds=len)
 def kind_of_pair(kinds, i, j):
     """The number of the pair of the kinds of two beads: all with the first, with the second, ..."""
-    if len(kinds) == 0:
-        return lambda kinds, i, j: 0
-    return lambda kinds, i, j: kinds.beads[i] * kinds.number + kinds.beads[j]
+    return kinds.beads[i] * kinds.number + kinds.beads[j]
 
 
 @by_type
@@ -50,14 +49,10 @@ def _of_several(potential, kind, asked, total, separation, i, j):
     return of_others(potential.others, kind, asked, total, separation, i, j)
 
 
-@by_type
+@where("total", others=len)
 def of_others(others, kind, asked, total, separation, i, j):
     """`of_chosen`, of the potentials of the other classes; no force where there are none."""
-    if len(others) == 0:
-        return lambda others, kind, asked, total, separation, i, j: total
-    return lambda others, kind, asked, total, separation, i, j: of_chosen(
-        others[0], kind, asked, total, separation, i, j
-    )
+    return of_chosen(others[0], kind, asked, total, separation, i, j)
 
 
 @by_type
@@ -77,14 +72,10 @@ def _of_several_angles(potential, kind, asked, total, before, after, role):
     return of_other_angles(potential.others, kind, asked, total, before, after, role)
 
 
-@by_type
+@where("total", others=len)
 def of_other_angles(others, kind, asked, total, before, after, role):
     """`of_chosen_angle`, of the potentials of the other classes."""
-    if len(others) == 0:
-        return lambda others, kind, asked, total, before, after, role: total
-    return lambda others, kind, asked, total, before, after, role: of_chosen_angle(
-        others[0], kind, asked, total, before, after, role
-    )
+    return of_chosen_angle(others[0], kind, asked, total, before, after, role)
 
 
 @scalar
@@ -103,13 +94,9 @@ def nothing(total):
     return "0.0"
 
 
-@by_type
+@where("total", bond=len)
 def each_bond(bond, asked, total, beads, i, r):
     """Add all bonds of bead i."""
-    return _each_bond if len(bond) else lambda bond, asked, total, beads, i, r: total
-
-
-def _each_bond(bond, asked, total, beads, i, r):
     (potential,), part = bond, nothing(total)
     for n in range(beads.bond_starts[i], beads.bond_starts[i + 1]):
         j = beads.bonds[n]
@@ -119,13 +106,9 @@ def _each_bond(bond, asked, total, beads, i, r):
     return added(total, part)
 
 
-@by_type
+@where("total", angle=len)
 def each_angle(angle, asked, total, beads, i, r):
     """Add all angles with bead i."""
-    return _each_angle if len(angle) else lambda angle, asked, total, beads, i, r: total
-
-
-def _each_angle(angle, asked, total, beads, i, r):
     (potential,), part = angle, nothing(total)
     for n in range(beads.angle_starts[i], beads.angle_starts[i + 1]):
         a = load_place(beads, beads.angles[n, 0], r)
@@ -137,13 +120,9 @@ def _each_angle(angle, asked, total, beads, i, r):
     return added(total, part)
 
 
-@by_type
+@where("total", pair=len)
 def each_pair(pair, asked, total, beads, i, r, box):
     """Add all pairs of bead i: those on its list or, if the list is crowded, with all beads."""
-    return _each_pair if len(pair) else lambda pair, asked, total, beads, i, r, box: total
-
-
-def _each_pair(pair, asked, total, beads, i, r, box):
     (potential,), (lists,), part = pair, beads.neighbours, nothing(total)
     count, around = lists.count[i], number_of(beads.halo, len(lists.count), AROUND)
     for n in range(count if count != CROWDED else around):
@@ -154,12 +133,8 @@ def _each_pair(pair, asked, total, beads, i, r, box):
     return added(total, part)
 
 
-@by_type
+@where("total", wall=len)
 def at_wall(wall, asked, total, beads, r):
     """Add the nearest surface."""
-    return _at_wall if len(wall) else lambda wall, asked, total, beads, r: total
-
-
-def _at_wall(wall, asked, total, beads, r):
     (potential,) = wall
     return of_wall(asked, total, potential, beads.near_wall, r)

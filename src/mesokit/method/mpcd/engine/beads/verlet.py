@@ -6,21 +6,18 @@ Half a kick, then a drift and a kick for each sub-step, the last kick a half one
 from mesokit.case.box import at_time
 from mesokit.geometry.protocol import free
 from mesokit.method.mpcd.engine.cpu.bounce import bounce
+from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.streaming import fall
-from mesokit.scalar.jit import by_type, generic, scalar
+from mesokit.scalar.jit import generic, scalar
 from mesokit.scalar.random import Counter
 from mesokit.scalar.vector import scaled
 
 SUBSTEP_BITS = 40  # sub-steps stand above these bits of a step's number in random streams
 
 
-@by_type
+@where()
 def verlet(moving, now, physics, substeps):
     """Positions and velocities a timestep later, in sub-steps."""
-    return _verlet
-
-
-def _verlet(moving, now, physics, substeps):
     step, time = now.counter.step, physics.timestep / substeps
     # With h = dt / substeps: after kick n, r is at t + n h and v at t + (n + 1/2) h. The first and
     # the last kick are half ones, so v ends at t + dt. The two half kicks between drifts are one.

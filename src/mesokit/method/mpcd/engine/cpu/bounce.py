@@ -9,6 +9,7 @@ from mesokit.geometry.protocol import (
     lever,
     rebound,
     settled,
+    surface_and_lever,
     surface_of,
     unmet,
 )
@@ -26,6 +27,13 @@ MOST_HITS = 256  # within one timestep, pieces of a long flight included
 def add_recoil(impulse, surface, r, p, scale):
     """Add the momentum p, taken at r relative to the pivot, to what a surface took."""
     take_sum(impulse, surface, p + outer(r, p), scale)
+
+
+@scalar
+def body_takes(impulse, solid, term, r, p, scale):
+    """Add the momentum p, taken at r, to what the surface of a term took."""
+    surface, lever = surface_and_lever(solid, term, r)
+    add_recoil(impulse, surface, lever, p, scale)
 
 
 @scalar

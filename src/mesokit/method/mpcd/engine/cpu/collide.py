@@ -50,9 +50,8 @@ def total_block(sums, start, count, totals, terms):
                 gather_sums(sums[t], start + i, i, totals, terms)
         for i in range(together, count):
             cell = np.uint64(start + i) * length
-            store_scratch(
-                totals, i, added(load_scratch(totals, i, none), load_values(sums[t], cell, none))
-            )
+            found_here = load_values(sums[t], cell, none)
+            store_scratch(totals, i, added(load_scratch(totals, i, none), found_here))
             store_values(sums[t], cell, none)
 
 
@@ -63,11 +62,8 @@ def put_block(coefficients, start, count, rows, c):
     for i in range(0, together, QUAD):
         spread(coefficients, start + i, i, rows, c)
     for i in range(together, count):
-        store_values(
-            coefficients,
-            np.uint64(start + i) * np.uint64(record_length(len(c))),
-            load_scratch(rows, i, c),
-        )
+        place = np.uint64(start + i) * np.uint64(record_length(len(c)))
+        store_values(coefficients, place, load_scratch(rows, i, c))
 
 
 @scalar
@@ -167,11 +163,9 @@ def settle_batch(worker, counter, physics, fluid, which, count):
 @by_type
 def is_empty(fluid):
     """Whether there is no fluid at all; a rank that has no particles may have cells of others."""
-    return (lambda fluid: False) if shares(fluid) else _is_empty
-
-
-def _is_empty(fluid):
-    return fluid.particles.filling.molecules == 0
+    if shares(fluid):
+        return lambda fluid: False
+    return lambda fluid: fluid.particles.filling.molecules == 0
 
 
 @inner

@@ -1,4 +1,4 @@
-"""Execution on the threads of one machine: the verbs of a step, and the state between two."""
+"""Execution on the threads of one machine: runs of steps, and the state between two of them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.loops.clock import BEADS, CELLS, FINISH, FIRST, SORT, SWEEP
 from mesokit.loops.threads import Threads
-from mesokit.method.mpcd.engine.beads.broken_bonds import refuse_broken
+from mesokit.method.mpcd.engine.beads.interactions import refuse_broken
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, MEASURE_WALLS, Course
 from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
@@ -35,30 +35,20 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-def _read(method: Callable[Concatenate[Readings, P], T]) -> Callable[Concatenate[CPU, P], T]:
-    """A method of the readings, as one of the engine."""
-
-    @functools.wraps(method)
-    def read(engine: CPU, *given: P.args, **more: P.kwargs) -> T:
-        return method(engine.readings, *given, **more)
-
-    return read
-
-
-def _read_by_pieces(
-    method: Callable[Concatenate[ByPieces, P], T],
+def _read(
+    method: Callable[Concatenate[Any, P], T], of: Callable[[Readings], Any] = lambda one: one
 ) -> Callable[Concatenate[CPU, P], T]:
-    """A method of the readings by pieces, as one of the engine."""
+    """A method of the readings, or of what `of` makes of them, as one of the engine."""
 
     @functools.wraps(method)
     def read(engine: CPU, *given: P.args, **more: P.kwargs) -> T:
-        return method(ByPieces(engine.readings), *given, **more)
+        return method(of(engine.readings), *given, **more)
 
     return read
 
 
 class CPU:
-    """A fluid in memory, what moves it on, and what can be read of it.
+    """A fluid in memory, its steps, and readings of it.
 
     Parameters
     ----------
@@ -108,12 +98,12 @@ class CPU:
         return pieces(0, self.n, self.numbers.beads)
 
     def begin(self, particles: Iterable[tuple[Any, ...]]) -> None:
-        """Have the fluid's particles: a `Piece` for each of `parts`."""
+        """Store the fluid's particles: a `Piece` for each of `parts`."""
         self._take(Piece(*piece) for piece in particles)
         self.sort()
 
     def _take(self, particles: Iterable[Piece]) -> None:
-        """Have these particles, in the order of their numbers."""
+        """Store these particles, in the order of their numbers."""
         for piece in particles:
             self.memory.put(*piece, first=int(piece.ids[0]) // self.numbers.beads)
 
@@ -140,16 +130,21 @@ class CPU:
                 self.solutes.state_of.tensor[:] = 0.0
         self._steps(steps, what)
         self.readings.wall_steps += steps
-        self._check_bonds()
+        molecule, springs = self.case.fluid.molecule, memory.physics.molecule
+        if molecule is not None and isinstance(springs, Springs):
+            advice = (
+                f"take more sub-steps than {springs.substeps} (fluid.molecule.substeps), a stiffer "
+                "bond, or start from particles that are not so far apart"
+            )
+            faults = memory.fluid.taken.faults
+            refuse_broken(faults, molecule.bond.longest, "particles", advice)
         if self.solutes is not None:
             self.solutes.check()
         if measure_stress:
             self.readings.find_stress()
 
     def _steps(self, steps: int, what: int) -> None:
-        """Let the threads do so many steps."""
-        course = self._course(steps, what)
-        self.threads.run(advance, course, *self.memory.groups())
+        self.threads.run(advance, self._course(steps, what), *self.memory.groups())
         self.memory.step += steps
 
     def _course(self, steps: int, what: int) -> Course:
@@ -165,31 +160,17 @@ class CPU:
             grid=memory.grid,
         )
 
-    def _check_bonds(self) -> None:
-        """That no bond was broken in the last steps."""
-        molecule, springs = self.case.fluid.molecule, self.memory.physics.molecule
-        if molecule is not None and isinstance(springs, Springs):
-            advice = (
-                f"take more sub-steps than {springs.substeps} (fluid.molecule.substeps), a stiffer "
-                "bond, or start from particles that are not so far apart"
-            )
-            faults = self.memory.fluid.taken.faults
-            refuse_broken(faults, molecule.bond.longest, "particles", advice)
-
     def sort(self) -> None:
         """Bring particles back into the box and those of one cell together in memory."""
         memory = self.memory
         where = memory.box, memory.grid, memory.fluid.particles
         self.threads.run(sort, memory.physics.zero, *where, memory.order)
         memory.fluid.room[:] = 0.0  # other particles are in the strips now
-        self._check_sums(self._largest_crowd())
-
-    def _largest_crowd(self) -> int:
-        """Particles in the fullest cell, just after the sort."""
         if self.numbers.beads == 1:
-            return int(np.diff(self.memory.order.ends[-1, :-1], prepend=0).max())
-        cells = self.memory.fluid.particles.cell[self.memory.places]
-        return int(np.bincount(cells, minlength=1).max())
+            crowds = np.diff(memory.order.ends[-1, :-1], prepend=0)
+        else:
+            crowds = np.bincount(memory.fluid.particles.cell[memory.places], minlength=1)
+        self._check_sums(int(crowds.max()))
 
     def _check_sums(self, crowd: int) -> None:
         """That a cell of so many particles of the fastest kind cannot make its sums overflow."""
@@ -220,7 +201,7 @@ class CPU:
         self._check_sums(1)
 
     def end_warmup(self) -> None:
-        """Forget what surfaces took so far."""
+        """Set the momentum that surfaces took to 0."""
         self.readings.forget_walls()
 
     # --- its state ------------------------------------------------------------------------------
@@ -231,44 +212,48 @@ class CPU:
         Raises RunError if sums have overflowed.
         """
         self.check()
-        memory = self.memory
-        positions, velocities, images = memory.read()
         return {
             **(self.solutes.state() if self.solutes else {}),
-            "positions": positions,
-            "velocities": velocities,
-            "images": images,
+            **self._state_of_particles(),
             "step": np.int64(self.step),
             **self.readings.state_of_walls(),
-            "wall_rates": memory.wall_rates.copy(),
+            "wall_rates": self.readings.wall_rates(),
         }
+
+    def _state_of_particles(self) -> dict[str, Any]:
+        return dict(zip(("positions", "velocities", "images"), self.memory.read(), strict=True))
 
     def restore(self, state: Mapping[str, NDArray]) -> None:
         """Go on from a state, with the same bits whatever the number of threads was."""
-        memory, taken = self.memory, self.memory.fluid.taken
+        self._restore(state, self._given(state))
+
+    def _given(self, state: Mapping[str, Any]) -> Iterator[Piece]:
         require_finite(state)
+        yield from of_state(state, (self.n, self.dimension), self.numbers.beads)
+
+    def _restore(self, state: Mapping[str, NDArray], particles: Iterable[Piece]) -> None:
+        """Go on from these particles, and from all else in a state."""
         self.readings.forget()
-        taken.faults[:] = 0
-        self._take(of_state(state, (self.n, self.dimension), self.numbers.beads))
-        memory.step = int(state["step"])
+        self.memory.fluid.taken.faults[:] = 0
+        self._take(particles)
+        self.memory.step = int(state["step"])
         self.readings.restore_walls(state)
-        memory.wall_rates[:] = state["wall_rates"]
+        self.memory.wall_rates[:] = state["wall_rates"]
         if self.solutes is not None:
             self.solutes.restore(dict(state))
 
     @property
     def seconds(self) -> dict[str, float]:
         """Time spent so far in each stage."""
-        names = {"sweep": SWEEP, "cells": CELLS, "finish": FINISH}
-        names |= {"beads": BEADS} if self.solutes is not None else {}
-        names |= {"sort": SORT}
+        beads = {"beads": BEADS} if self.solutes is not None else {}
+        names = {"sweep": SWEEP, "cells": CELLS, "finish": FINISH, **beads, "sort": SORT}
         return {name: TICK * float(self.threads.clock[FIRST + k]) for name, k in names.items()}
 
     def balance(self) -> dict[str, Any]:
         """How the work was shared anew while it ran."""
         return {}
 
-    # --- what observables ask -------------------------------------------------------------------
+    # --- readings for observables ---------------------------------------------------------------
 
     totals = _read(Readings.totals)
     moments = _read(Readings.moments)
@@ -281,9 +266,9 @@ class CPU:
     species = _read(Readings.species)
     bonds = _read(Readings.bonds)
     bond_vectors = _read(Readings.bond_vectors)
-    sums_of_particles = _read_by_pieces(ByPieces.sums_of_particles)
-    sums_of_bonds = _read_by_pieces(ByPieces.sums_of_bonds)
-    potential_energy = _read_by_pieces(ByPieces.potential_energy)
+    sums_of_particles = _read(ByPieces.sums_of_particles, ByPieces)
+    sums_of_bonds = _read(ByPieces.sums_of_bonds, ByPieces)
+    potential_energy = _read(ByPieces.potential_energy, ByPieces)
 
     @property
     def stress(self) -> dict[str, Floats]:
@@ -292,7 +277,7 @@ class CPU:
 
     @property
     def wall_impulse(self) -> Floats:
-        """What each surface took since the warm-up: momentum (d), angular momentum (1 or 3)."""
+        """Momentum (d) and angular momentum (1 or 3) that each surface took since the warm-up."""
         columns = self.dimension + (1 if self.dimension == 2 else 3)
         return self.readings.wall_tally.value.reshape(-1, columns)
 

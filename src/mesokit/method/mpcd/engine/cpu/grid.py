@@ -18,7 +18,7 @@ class Grid(NamedTuple):
 
 
 class Part(NamedTuple):
-    """The cells of one step that a rank knows, a block of those of the box: its own and some around
+    """The cells of one step that a rank holds, a block of those of the box: its own and some around
     them."""
 
     shift: tuple

@@ -9,20 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.geometry.solids.none import Nothing
-from mesokit.kernels.group import Packing
-from mesokit.loops.layout import (
-    BLOCK,
-    LANES,
-    ROW,
-    SCRATCH_ROW,
-    blocks_for,
-    places_of_beads,
-    record_length,
-    strips_for,
-    sums_length,
-    zeros,
-)
+from mesokit.geometry.protocol import Nothing
+from mesokit.kernels.packing import Packing
+from mesokit.loops import layout
+from mesokit.loops.layout import LANES, zeros
 from mesokit.method.mpcd.engine.beads.allocate import allocate_beads
 from mesokit.method.mpcd.engine.beads.registers import bead_size
 from mesokit.method.mpcd.engine.cell_gradient import Field
@@ -47,7 +37,7 @@ MOST = 2**31 - 2
 
 
 class Memory:
-    """A fluid in memory: its arrays, and what its step is told of its physics.
+    """A fluid in memory: its arrays, and the parameters of its physics.
 
     `step` steps have been done. Arrays of all threads are made here, so that memory is known.
     """
@@ -93,8 +83,12 @@ class Memory:
 
     def _physics(self) -> Physics:
         numbers, fluid, d = self.numbers, self.numbers.case.fluid, self.numbers.dimension
+        rule, molecule = fluid.collision.kernel(d, fluid.kT), ()
+        if fluid.molecule is not None:
+            molecule, links = fluid.molecule.kernel(d, fluid.timestep, fluid.kT, fluid.mass)
+            self._tables.append(links)
         return Physics(
-            rule=self._rule(),
+            rule=fluid.collision.among(rule, tuple(numbers.counts), fluid.mass),
             thermostat=fluid.thermostat.kernel(fluid.kT, numbers.least_energy),
             field=fluid.force.kernel(numbers.case.box.size),
             solid=self._solid(),
@@ -102,18 +96,13 @@ class Memory:
             energy=numbers.energy,
             timestep=fluid.timestep,
             kT=fluid.kT,
-            molecule=self._molecule(),
+            molecule=molecule,
             zero=(0.0,) * d,
             coefficients=(0.0,) * numbers.coefficient_count,
             terms=(0,) * len(numbers.scales),
             scales=numbers.scales,
             stress_scale=numbers.units["stress"],
         )
-
-    def _rule(self) -> Any:
-        numbers, fluid = self.numbers, self.numbers.case.fluid
-        kernel = fluid.collision.kernel(numbers.dimension, fluid.kT)
-        return fluid.collision.among(kernel, tuple(numbers.counts), fluid.mass)
 
     def _solid(self) -> tuple:
         """Parameters of the solids; plates alone have a kernel of their own."""
@@ -127,19 +116,8 @@ class Memory:
         self._tables.append(tables)
         return bodies
 
-    def _molecule(self) -> tuple:
-        """Parameters of what holds molecules together."""
-        fluid = self.numbers.case.fluid
-        if fluid.molecule is None:
-            return ()
-        kernel, links = fluid.molecule.kernel(
-            self.numbers.dimension, fluid.timestep, fluid.kT, fluid.mass
-        )
-        self._tables.append(links)
-        return kernel
-
     def _allocate(self) -> None:
-        numbers, d = self.numbers, self.numbers.dimension
+        numbers, threads, d = self.numbers, self.threads, self.numbers.dimension
         filling, beads, room = numbers.filling, numbers.beads, numbers.filling.molecules
         self.cells, self.number_of_cells = numbers.cells, numbers.number_of_cells
         if self.domain is not None:
@@ -147,38 +125,52 @@ class Memory:
             self.cells, self.number_of_cells = self.domain.region.known, self.domain.region.number
         self._require_few(room * beads)
         self.rows = 2 * d + (not numbers.uniform)
-        self.strips = strips_for(room, beads)
-        lanes = blocks_for(self.strips * LANES) * BLOCK
-        data, image = zeros(lanes // BLOCK * self.rows * ROW), zeros((d, lanes), np.int32)
+        self.strips = layout.strips_for(room, beads)
+        lanes = layout.blocks_for(self.strips * LANES) * layout.BLOCK
+        data, image = (
+            zeros(lanes // layout.BLOCK * self.rows * layout.ROW),
+            zeros((d, lanes), np.int32),
+        )
         cell = zeros(lanes, np.int32)
+        most = max(numbers.coefficient_count, 2 * d)
+        bodies = len(numbers.solids.bodies) if numbers.solids else 0
+        surfaces = 2 if numbers.slit else bodies
+        strips = self.strips if "stress" in self.measures else 1
         self.fluid = FluidMemory(
             Particles(data, cell, np.arange(lanes), image, filling, self.rows),
             self._cells(),
             zeros((2, self.strips * (LANES // FEW))),
-            self._scratch(),
-            self._taken(),
+            Scratch(
+                coefficients=zeros((threads, most * layout.SCRATCH_ROW)),
+                terms=zeros(
+                    (threads, (len(self.physics.terms) + 1) * layout.SCRATCH_ROW), np.int64
+                ),
+                marks=zeros((threads, LANES), np.int64),
+                clear=zeros((threads, beads * layout.SCRATCH_ROW), np.int32),
+                beads=zeros((threads, beads * bead_size(d) if beads > 1 else 1)),
+            ),
+            Taken(
+                impulse=zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64),
+                tensor=zeros((2 + (beads > 1), strips, 2 * d * d), np.int64),
+                faults=zeros((threads, 8), np.int64),
+            ),
         )
         self.fluid.particles.ident[self.places] = np.arange(filling.molecules * beads)
-        spare = zeros(room * beads)
-        ends = zeros((self.threads, self.number_of_cells + 1), np.int32)
-        self.order = Order(
-            zeros(room * beads, np.int32), ends, spare, spare.view(np.int32), spare.view(np.int64)
-        )
+        spare, order = zeros(room * beads), zeros(room * beads, np.int32)
+        ends = zeros((threads, self.number_of_cells + 1), np.int32)
+        self.order = Order(order, ends, spare, spare.view(np.int32), spare.view(np.int64))
         self.walls = self._walls()
 
     def _require_few(self, particles: int) -> None:
         """Raise RunError for more cells or particles than 32 bits can number, here or on a rank."""
         slots = 0 if self.domain is None else self.domain.slots
-        if self.number_of_cells + slots >= MOST:
-            raise RunError(
-                f"box.size: {self.number_of_cells} cells are more than one process can number; "
-                "expected several ranks, or more of them"
-            )
-        if particles >= MOST:
-            raise RunError(
-                f"fluid.density: {particles} particles are more than one process can number; "
-                "expected several ranks, or more of them"
-            )
+        cells = f"box.size: {self.number_of_cells} cells", self.number_of_cells + slots
+        for what, number in (cells, (f"fluid.density: {particles} particles", particles)):
+            if number >= MOST:
+                raise RunError(
+                    f"{what} are more than one process can number; expected several ranks, or more "
+                    "of them"
+                )
 
     @property
     def places(self) -> NDArray[np.int64]:
@@ -188,19 +180,19 @@ class Memory:
         if (molecules, beads) != self._placed:
             self._places = np.arange(molecules)
             if beads > 1:
-                self._places = places_of_beads(molecules, beads).ravel()
+                self._places = layout.places_of_beads(molecules, beads).ravel()
             self._placed = molecules, beads
         return self._places
 
     def _cells(self) -> Cells:
         # in the last, lanes that must not act leave their terms
         every = self.number_of_cells + 1
-        width = sums_length(len(self.physics.terms))
+        width = layout.sums_length(len(self.physics.terms))
         shared = () if self.domain is None else self.domain.shared(self)
         slots = 0 if self.domain is None else self.domain.slots
         return Cells(
             self.number_of_cells,
-            zeros((every + slots) * record_length(self.numbers.coefficient_count)),
+            zeros((every + slots) * layout.record_length(self.numbers.coefficient_count)),
             zeros((self.threads, every * width), np.int64),
             self._field(),
             shared,
@@ -216,28 +208,6 @@ class Memory:
         closed = tuple(int(shut) for shut in numbers.closed)
         term, values = len(numbers.scales) - own + wanted, zeros(self.number_of_cells)
         return Field(term, values, tuple(self.cells), closed)
-
-    def _scratch(self) -> Scratch:
-        d, threads, beads = self.numbers.dimension, self.threads, self.numbers.beads
-        most = max(self.numbers.coefficient_count, 2 * d)
-        return Scratch(
-            coefficients=zeros((threads, most * SCRATCH_ROW)),
-            terms=zeros((threads, (len(self.physics.terms) + 1) * SCRATCH_ROW), np.int64),
-            marks=zeros((threads, LANES), np.int64),
-            clear=zeros((threads, beads * SCRATCH_ROW), np.int32),
-            beads=zeros((threads, beads * bead_size(d) if beads > 1 else 1)),
-        )
-
-    def _taken(self) -> Taken:
-        numbers, d, threads = self.numbers, self.numbers.dimension, self.threads
-        bodies = len(numbers.solids.bodies) if numbers.solids else 0
-        surfaces = 2 if numbers.slit else bodies
-        strips = self.strips if "stress" in self.measures else 1
-        return Taken(
-            impulse=zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64),
-            tensor=zeros((2 + (numbers.beads > 1), strips, 2 * d * d), np.int64),
-            faults=zeros((threads, 8), np.int64),
-        )
 
     def _walls(self) -> Walls:
         numbers, virtual = self.numbers, self.numbers.virtual
@@ -256,7 +226,7 @@ class Memory:
         return virtual.rates if virtual else np.zeros((2, self.numbers.dimension))
 
     def fill(self, positions: Floats, velocities: Floats, images: Any = 0) -> None:
-        """Write what is known of each particle (n, d), by particle number, in the present order."""
+        """Write positions, velocities and images (n, d), given by particle number."""
         ids = self.fluid.particles.ident[self.places]
         images = np.broadcast_to(images, positions.shape)
         self.put(ids, positions[ids], velocities[ids], images[ids])
@@ -269,12 +239,9 @@ class Memory:
         images: NDArray[Any],
         first: int = 0,
     ) -> None:
-        """Have these particles (n,), whole molecules, from this molecule on in memory."""
-        particles, d, start = (
-            self.fluid.particles,
-            self.numbers.dimension,
-            first * self.numbers.beads,
-        )
+        """Store these particles (n,), whole molecules, from this molecule on in memory."""
+        particles, d = self.fluid.particles, self.numbers.dimension
+        start = first * self.numbers.beads
         data, places = particles.data, self.places[start : start + len(ids)]
         particles.ident[places] = ids
         for k in range(d):
@@ -287,15 +254,10 @@ class Memory:
 
     def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """Positions and velocities as they lie in memory, and images (n, d), by particle number."""
-        ids, (positions, velocities, images) = (
-            self.fluid.particles.ident[self.places],
-            self.rows_of(),
-        )
-        out = np.empty((len(ids), 2 * self.numbers.dimension))
-        out[ids] = np.concatenate([positions, velocities], axis=1)
-        counts = np.empty(images.shape, np.int32)
-        counts[ids] = images
-        return out[:, : positions.shape[1]], out[:, positions.shape[1] :], counts
+        ids, rows = self.fluid.particles.ident[self.places], self.rows_of()
+        positions, velocities, images = (np.empty(row.shape, row.dtype) for row in rows)
+        positions[ids], velocities[ids], images[ids] = rows
+        return positions, velocities, images
 
     def rows_of(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """The same in the order of memory."""
@@ -316,12 +278,8 @@ class Memory:
     def at(self, row: int, places: Any = None) -> NDArray[np.int64]:
         """Where a row's values lie in memory: those of all particles, or at these places."""
         places = self.places if places is None else places
-        return places // BLOCK * (self.rows * ROW) + row * ROW + places % BLOCK
-
-    @property
-    def bytes_held(self) -> int:
-        """Memory of all arrays."""
-        fluid, order = self.fluid, self.order
-        groups = (*fluid.particles, *fluid.cells, fluid.room, *fluid.scratch, *fluid.taken)
-        arrays = (*groups, order.order, order.ends, order.spare)
-        return sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
+        return (
+            places // layout.BLOCK * (self.rows * layout.ROW)
+            + row * layout.ROW
+            + places % layout.BLOCK
+        )

@@ -2,7 +2,7 @@
 
 Particles of a strip lie next to one another, sorted by cell. If all of some lanes are far from all
 solids, tables are not read again until one of them may be near. Functions that take views of arrays
-are `by_type`, for then numba does not count the users of these arrays.
+are declared by `where`, for then numba does not count the users of these arrays.
 """
 
 import math
@@ -12,6 +12,7 @@ import numpy as np
 from mesokit.geometry.solids.bodies import Bodies, cube_of
 from mesokit.loops.layout import LANES, ROW
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
+from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.pointer import whole
 
@@ -21,28 +22,20 @@ ROUNDED_DOWN = 1.0 - 1e-6  # of numbers that float32 may have rounded up
 
 
 @by_type
-def look_around_strip(solid, strip, s, calm, clear, pattern):
-    """The clear distance of each particle of strip s, plates not counted.
-
-    It is found for as many lanes at once as `lanes_together` has.
-
-    The result has a bit for each of these parts: whether a stride is clear, plates or not.
-    """
-    return _look_around if solid.instance_class is Bodies else lambda *_: 0
-
-
-@by_type
 def lanes_together(solid):
     """The number of lanes with one clear distance: a strip, or fewer for solids in tables."""
     number = FEW if solid.instance_class is Bodies else LANES
     return lambda solid: number
 
 
-def _look_around(solid, strip, s, calm, clear, pattern):
-    """At most a stride, which few go beyond.
+@where("0", solid=lambda solid: solid.instance_class is Bodies)
+def look_around_strip(solid, strip, s, calm, clear, pattern):
+    """The clear distance of each particle of strip s, plates not counted, at most a stride.
 
-    `calm` is the distance that is surely clear around every particle of a part of a strip, of
-    plates and of all else: each step takes off a stride, until it is found anew.
+    It is found for as many lanes at once as `lanes_together` has. `calm` is the distance that is
+    surely clear around every particle of such a part, of plates and of all else: each step takes
+    off a stride, until it is found anew. The result has a bit for each part: whether a stride is
+    clear, plates or not.
     """
     quiet = 0
     # 64 neighbours in memory share a budget of clear distance, in cells, from plates and from other
@@ -60,17 +53,13 @@ def _look_around(solid, strip, s, calm, clear, pattern):
     return quiet
 
 
-@by_type
+@where()
 def look_up(solid, strip, n, calm, clear, pattern):
     """The distance around each particle of the nth part, and the least of them if it is not known.
 
     `clear` holds the bits of float32 numbers: those of positive numbers are in the same order, and
     the least of whole numbers is found faster.
     """
-    return _look_up
-
-
-def _look_up(solid, strip, n, calm, clear, pattern):
     stride = np.int32(np.float32(solid.stride * solid.stride).view(np.int32))
     # Three loops instead of one: the first and the last become vectors, between them is the gather
     # from the table. Clearances are squares in float32, rounded down.
@@ -89,13 +78,9 @@ def _look_up(solid, strip, n, calm, clear, pattern):
             clear[i] = stride
 
 
-@by_type
+@where()
 def room_between_plates(solid, strip, clear, pattern):
     """The least distance of the particles of the part from plates; `clear` is scratch memory."""
-    return _room_between_plates
-
-
-def _room_between_plates(solid, strip, clear, pattern):
     least = np.int32(np.float32(MOST_ROOM).view(np.int32))
     # Axis by axis, as plates lie across axes; a coordinate beyond a plate has no room at all.
     for k in range(len(pattern)):

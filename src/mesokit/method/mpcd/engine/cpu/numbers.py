@@ -10,13 +10,7 @@ from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.geometry.solids.solids import slit_of, solids_of
 from mesokit.loops.layout import Molecules, Singles
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
-    MOST_DENSITY,
-    Column,
-    NotAsked,
-    WithCount,
-    with_count,
-)
+from mesokit.method.mpcd.engine.cpu.strips import cell_energy
 from mesokit.method.mpcd.groups import fluid_volume
 
 # Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT.
@@ -32,7 +26,7 @@ class Numbers:
     """Numbers of a case: of its particles and cells, and of fixed-point sums.
 
     counts: particles of each kind; n of all; beads: of each molecule (1 for single particles).
-    virtual: the rule of virtual particles, "none" where no surface asks for them. cells: along each
+    virtual: the rule of virtual particles, "none" where no surface needs them. cells: along each
     axis; coefficient_count: of each cell.
     units: whole numbers per unit of momentum, mass, energy and stress; fastest: the largest speed.
     """
@@ -69,24 +63,25 @@ class Numbers:
         self.fastest = 2.0**49 / self.units["momentum"] / self.heaviest
         self.energy = self._energy()
         names = ["momentum"] * d + ([] if self.uniform else ["mass"])
-        names += ["energy"] * isinstance(self.energy, Column)
+        names += ["energy"] * isinstance(self.energy, cell_energy.Column)
         names += fluid.collision.own_sums(d)
         self.scales = tuple(self.units[name] for name in names)
-        self.masses_of_kinds = [_on_grid(kind.mass, self.units["mass"]) for kind in fluid.kinds]
+        # rounded so that sums of masses are exact in fixed point
+        grid = self.units["mass"]
+        self.masses_of_kinds = [round(kind.mass * grid) / grid for kind in fluid.kinds]
         self.coefficient_count = fluid.collision.coefficient_count(d, fluid.thermostat.needs_energy)
         steps = 2.0 * SORT_DISTANCE_SQUARED * fluid.mass / (fluid.kT * fluid.timestep**2)
         self.sort_every = int(min(max(steps, 10), 100))
 
-    def _energy(self) -> NotAsked | Column | WithCount:
-        """How cells learn their kinetic energy."""
+    def _energy(self) -> cell_energy.NotNeeded | cell_energy.Column | cell_energy.WithCount:
         fluid = self.case.fluid
-        sparse = self.uniform and fluid.density <= MOST_DENSITY
+        sparse = self.uniform and fluid.density <= cell_energy.MOST_DENSITY
         if fluid.collision.needs_energy or (fluid.thermostat.needs_energy and not sparse):
-            return Column()
+            return cell_energy.Column()
         if fluid.thermostat.needs_energy:
             thermal = 2.0**ENERGY_BITS / self.units["energy"]
-            return with_count(thermal, max(fluid.density, 1.0))
-        return NotAsked()
+            return cell_energy.with_count(thermal, max(fluid.density, 1.0))
+        return cell_energy.NotNeeded()
 
     @property
     def density(self) -> float:
@@ -100,9 +95,9 @@ class Numbers:
 
     @property
     def least_energy(self) -> float:
-        """What a thermostat takes for no energy of a cell."""
+        """Energy of a cell below which a thermostat takes it for 0."""
         unit = 1.0 / self.units["energy"]
-        if isinstance(self.energy, WithCount):
+        if isinstance(self.energy, cell_energy.WithCount):
             unit = 1.0 / self.energy.scale
         return FLOOR * unit * math.sqrt(self.n / self.case.box.volume + 1.0)
 
@@ -158,8 +153,3 @@ def fastest_surface(case: Case) -> float:
         ),
         default=0.0,
     )
-
-
-def _on_grid(mass: float, scale: float) -> float:
-    """The mass rounded so that sums of masses are exact in fixed point."""
-    return round(mass * scale) / scale

@@ -1,7 +1,8 @@
-"""What the particles obey: parameters of each part, whose types pick the compiled physics."""
+"""Parameters of all parts of the physics, whose types pick the compiled code."""
 
 from typing import Any, NamedTuple
 
+from mesokit.geometry.protocol import Nothing
 from mesokit.kernels.group import by_address, replaced, without
 from mesokit.method.mpcd.field.protocol import field_at
 from mesokit.scalar.jit import by_type, scalar
@@ -27,7 +28,7 @@ class Physics(NamedTuple):
     stress_scale: float  # whole numbers per unit of m v^2 in the stress
 
 
-# What stages do not look at, so that kinds of case that differ in it have the same stage.
+# Fields are hidden from stages without use for them: kinds of case that differ in them share these.
 of_particles = without("thermostat")
 of_cells = without("field", "solid", "molecule")
 of_walls = without("thermostat", "field", "molecule")
@@ -53,6 +54,11 @@ def field_of_step(physics, done):
 def kind_of_solid(physics: Any) -> type:
     """The class of the solid, from the numba type of `Physics`."""
     return field_of(physics, "solid").instance_class
+
+
+def has_solid(physics: Any) -> bool:
+    """Whether there are solids, from the same."""
+    return kind_of_solid(physics) is not Nothing
 
 
 def field_of(group: Any, name: str) -> Any:

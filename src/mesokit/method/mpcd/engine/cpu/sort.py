@@ -93,16 +93,14 @@ def fold_with(filling, box, r, v, leader):
     Under shear every bead is folded by itself, for velocities of one cell are those of one image.
     """
     alone = filling.instance_class is Singles or box.instance_class in SLIDING
-    return _by_itself if alone else _with_leader
+    if alone:
+        return lambda filling, box, r, v, leader: fold(box, r, v, scaled(0.0, r))
 
+    def with_leader(filling, box, r, v, leader):
+        _, _, crossed = fold(box, leader, v, scaled(0.0, r))
+        return unfold(box, r, v, scaled(-1.0, crossed)) + (crossed,)
 
-def _by_itself(filling, box, r, v, leader):
-    return fold(box, r, v, scaled(0.0, r))
-
-
-def _with_leader(filling, box, r, v, leader):
-    _, _, crossed = fold(box, leader, v, scaled(0.0, r))
-    return unfold(box, r, v, scaled(-1.0, crossed)) + (crossed,)
+    return with_leader
 
 
 @inner

@@ -5,13 +5,12 @@ import numpy as np
 from mesokit.case.box import slide
 from mesokit.geometry.protocol import exposed, free, leaps, touches
 from mesokit.geometry.solids.bodies import Bodies
-from mesokit.geometry.solids.none import Nothing
 from mesokit.loops.layout import LANES, QUAD, SCRATCH_ROW, sums_length
 from mesokit.method.mpcd.collision.protocol import collide, contribute
 from mesokit.method.mpcd.engine.cpu.bounce import bounce
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW, lanes_together
-from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid
+from mesokit.method.mpcd.engine.cpu.physics import has_solid, kind_of_solid
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.records import gather, scatter_add
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
@@ -24,6 +23,7 @@ from mesokit.method.mpcd.engine.cpu.strips.rows import (
     store_scratch,
 )
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
+from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.streaming import fall, halfway, vector
 from mesokit.scalar.jit import by_type, optional, scalar
 from mesokit.scalar.vector import added_scaled, chosen
@@ -53,7 +53,7 @@ def clear_of(solid, clear, i):
 
 @scalar
 def fly(physics, strip, i, r, v, around, hits):
-    """Store position and velocity a timestep later; a particle that may hit a surface stays behind.
+    """Store position and velocity a timestep later; one that may hit a surface stays where it is.
 
     The latter is marked in `hits`, and the result is 1. `around` is an argument of `touches`.
     """
@@ -105,8 +105,8 @@ def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits)
         return any_hit
 
     def looked_around(physics, grid, strip, gathered, quiet, clear, hits):
-        behind = np.int64(0)
-        # Parts of 64 lanes, each with one bit in `behind`. In a quiet part every flight up to a
+        left = np.int64(0)
+        # Parts of 64 lanes, each with one bit in `left`. In a quiet part every flight up to a
         # stride is free, so the loop needs no distance for each lane.
         for part in range(LANES // FEW):
             start = part * FEW
@@ -119,19 +119,15 @@ def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits)
                 clear[start:],
                 hits[start:],
             )
-            behind |= any_hit << part
-        return behind
+            left |= any_hit << part
+        return left
 
     return looked_around if kind_of_solid(physics) is Bodies else among_solids
 
 
-@by_type
+@where()
 def move_few(physics, grid, strip, gathered, quiet, clear, hits):
     """Collide and stream a part of a strip; a quiet part needs a simpler test."""
-    return _move_few
-
-
-def _move_few(physics, grid, strip, gathered, quiet, clear, hits):
     zero, any_hit = physics.zero, np.int64(0)
     d = len(zero)
     if quiet != 0:
@@ -147,17 +143,13 @@ def _move_few(physics, grid, strip, gathered, quiet, clear, hits):
     return any_hit
 
 
-@by_type
-def bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
+@where("0", physics=has_solid)
+def bounce_strip(physics, counter, strip, count, left, ident, hits, impulse):
     """Flight of the marked particles, with reflections; what surfaces take goes to impulse.
 
-    `behind` and the result have a bit for each part of the strip: whether some stayed behind, and
+    `left` and the result have a bit for each part of the strip: whether some are left, and
     whether any of these then went farther than a stride.
     """
-    return _bounce_strip if kind_of_solid(physics) is not Nothing else lambda *_: 0
-
-
-def _bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
     zero, far, width = physics.zero, 0, lanes_together(physics.solid)
     d = len(zero)
     # Only particles that stayed behind in `fly` are moved here, with reflections. They are few, so
@@ -165,7 +157,7 @@ def _bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
     # matter.
     for start in range(0, count, width):
         part, marked = start // width, start
-        if (behind >> part) & 1 == 0:
+        if (left >> part) & 1 == 0:
             continue
         # Compact their lanes to the front of the part, without branches. No unread mark is lost,
         # since `marked` never exceeds i.

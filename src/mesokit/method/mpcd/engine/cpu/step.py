@@ -5,11 +5,13 @@ from mesokit.kernels.kernel import inner, kernel
 from mesokit.loops.clock import BEADS, CELLS, FINISH, START, SWEEP, lap
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.coupling import answer_beads, join_beads
+from mesokit.method.mpcd.engine.beads.flight import move_solutes
 from mesokit.method.mpcd.engine.cell_gradient import fill_field
 from mesokit.method.mpcd.engine.cpu.collide import collide_cells
 from mesokit.method.mpcd.engine.cpu.grid import moved_grid
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM, Now
-from mesokit.method.mpcd.engine.cpu.physics import field_of_step, with_field
+from mesokit.method.mpcd.engine.cpu.physics import field_of, field_of_step, with_field
+from mesokit.method.mpcd.engine.cpu.sweep import stream_fluid
 from mesokit.method.mpcd.engine.domains.messages.exchange import (
     exchange_sums,
     receive_coefficients,
@@ -21,10 +23,59 @@ from mesokit.method.mpcd.engine.domains.messages.migrate import (
     note_done,
     room_left,
 )
-from mesokit.method.mpcd.engine.embedded.stages import move_beads, stream
-from mesokit.method.mpcd.engine.virtual.stages import fill_walls, follow_flow, recoil, top_up_walls
-from mesokit.scalar.jit import scalar
+from mesokit.method.mpcd.engine.embedded.flight import move_in_fluid
+from mesokit.method.mpcd.engine.embedded.state import is_embedded
+from mesokit.method.mpcd.engine.embedded.sweep import put_back, stream_around
+from mesokit.method.mpcd.engine.virtual.gradient import follow_flow
+from mesokit.method.mpcd.engine.virtual.one_by_one import (
+    fill_one_by_one,
+    recoil_one_by_one,
+    top_up_walls,
+)
+from mesokit.method.mpcd.engine.virtual.particles import drawn_per_cell
+from mesokit.method.mpcd.engine.virtual.per_cell import fill_cells, recoil_per_cell
+from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import Counter, grid_shift
+
+
+@by_type
+def stream(worker, now, physics, fluid, beads):
+    """The fluid's part (see `cpu.sweep.stream_fluid`); around solutes that act by a potential."""
+    if is_embedded(beads):
+        return lambda *given: stream_around(*given)
+    return lambda worker, now, physics, fluid, beads: stream_fluid(worker, now, physics, fluid)
+
+
+@by_type
+def move_beads(worker, now, physics, fluid, beads):
+    """The solutes' part (see `beads.flight.move_solutes`), with the fluid near them."""
+    if not is_embedded(beads):
+        return lambda *given: move_solutes(*given)
+
+    def together(worker, now, physics, fluid, beads):
+        move_in_fluid(worker, now, physics, fluid, beads)
+        put_back(worker, now, physics, fluid, beads)
+
+    return together
+
+
+@by_type
+def fill_walls(worker, now, physics, fluid, walls):
+    """Virtual particles at t + dt in the cells that walls cut, and their part in the sums of these.
+
+    They are drawn all of a cell at once where the collision rule cannot tell, else one by one.
+    """
+    if len(field_of(walls, "virtual")) == 0 or len(field_of(walls, "top_up")) > 0:
+        return lambda *_: None
+    return fill_cells if drawn_per_cell(walls) else fill_one_by_one
+
+
+@by_type
+def recoil(worker, now, physics, fluid, walls):
+    """Add the impulse that walls take by the collision of the virtual particles in them."""
+    if len(field_of(walls, "virtual")) == 0:
+        return lambda *_: None
+    return recoil_per_cell if drawn_per_cell(walls) else recoil_one_by_one
 
 
 @inner

@@ -4,7 +4,7 @@ Whole numbers, `scale` of which are one unit of m v^2: the sums do not depend on
 """
 
 from mesokit.scalar.fixed_point import add_quanta
-from mesokit.scalar.intrinsics import floor
+from mesokit.scalar.intrinsics import floor  # noqa: F401  the text of a function below uses it
 from mesokit.scalar.jit import elementwise, scalar
 from mesokit.scalar.vector import products, scaled
 
@@ -27,10 +27,4 @@ def add_product(tensor, scale, factor, a, b):
 @elementwise
 def within_cell(x):
     """A place relative to the corner of its cell, in cells."""
-    return "fractional_part(x[{k}])"
-
-
-@scalar
-def fractional_part(x):
-    """The fractional part of a number, from 0 to 1."""
-    return x - floor(x)
+    return "x[{k}] - floor(x[{k}])"

@@ -8,30 +8,13 @@ import numpy as np
 
 from mesokit.case.box import at_time, peculiar
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import (
-    LANES,
-    SCRATCH_ROW,
-    groups_in,
-    lanes_in,
-    share,
-    strip_at,
-    strips_in,
-)
+from mesokit.loops.layout import LANES, SCRATCH_ROW, groups_in, lanes_in, share, strip_at, strips_in
 from mesokit.method.mpcd.engine.beads.molecules import Batch, fly_molecules
 from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, bead_to_strip, strip_to_bead
+from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.physics import field_of, of_particles
-from mesokit.method.mpcd.engine.cpu.stages import (
-    add_strip,
-    bin_strip,
-    bounce_strip,
-    collide_and_stream_strip,
-    collide_strip,
-    gather_strip,
-    slide_strip,
-    stream_strip,
-)
 from mesokit.method.mpcd.engine.cpu.stress import flux
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle
@@ -74,30 +57,32 @@ def _stream_singles(worker, now, physics, fluid):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
         ids, image = particles.ident[places], particles.image[:, places]
-        quiet, behind = 0, np.int64(0)
+        quiet, left = 0, np.int64(0)
         if now.flags & STREAM:
             quiet = look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
         if now.flags & COLLIDE:
-            gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
+            stages.gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
         if now.flags & COLLIDE and now.flags & STREAM and not measured:
-            behind = collide_and_stream_strip(physics, now.old, strip, gathered, quiet, clear, hits)
+            left = stages.collide_and_stream_strip(
+                physics, now.old, strip, gathered, quiet, clear, hits
+            )
         else:
             if now.flags & COLLIDE:
-                collide_strip(physics, now.old, strip, gathered)
+                stages.collide_strip(physics, now.old, strip, gathered)
                 if measured and not now.flags & STREAM:
                     add_strip_flux(physics, now.box, now.old, strip, lanes, tensor[1, s])
             if now.flags & STREAM:
-                behind = stream_strip(physics, strip, clear, hits)
-        if behind != 0:
-            far = bounce_strip(physics, now.counter, strip, lanes, behind, ids, hits, impulse)
+                left = stages.stream_strip(physics, strip, clear, hits)
+        if left != 0:
+            far = stages.bounce_strip(physics, now.counter, strip, lanes, left, ids, hits, impulse)
             forget(fluid.room, s, far)
         if now.flags & STREAM:
-            slide_strip(now.box, now.grid, strip, image, zero)
+            stages.slide_strip(now.box, now.grid, strip, image, zero)
             if measured:
                 add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
-            bin_strip(physics, now, strip, cell, ids, terms)
+            stages.bin_strip(physics, now, strip, cell, ids, terms)
             tallied = tally(physics.energy, 0.0, zero)
-            add_strip(cell, terms, sums, lanes, physics.terms, tallied)
+            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied)
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
             note_migrants(worker, now, physics, fluid, strip, s)
 
@@ -125,8 +110,8 @@ def _stream_molecules(worker, now, physics, fluid):
                 near = clear[k * SCRATCH_ROW : (k + 1) * SCRATCH_ROW]
                 look_around_strip(physics.solid, strip, s, fluid.room, near, zero)
             if now.flags & COLLIDE:
-                gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
-                collide_strip(physics, now.old, strip, gathered)
+                stages.gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
+                stages.collide_strip(physics, now.old, strip, gathered)
                 if measured and not now.flags & STREAM:
                     add_strip_flux(physics, now.box, now.old, strip, lanes, tensor[1, s])
         if not now.flags & STREAM:
@@ -149,12 +134,12 @@ def _stream_molecules(worker, now, physics, fluid):
             s = g * beads + k
             places = slice(s * LANES, (s + 1) * LANES)
             strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
-            slide_strip(now.box, now.grid, strip, particles.image[:, places], zero)
+            stages.slide_strip(now.box, now.grid, strip, particles.image[:, places], zero)
             if measured:
                 add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
-            bin_strip(physics, now, strip, cell, particles.ident[places], terms)
+            stages.bin_strip(physics, now, strip, cell, particles.ident[places], terms)
             tallied = tally(physics.energy, 0.0, zero)
-            add_strip(cell, terms, sums, lanes, physics.terms, tallied)
+            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied)
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
             if k == 0:
                 note_migrants(worker, now, physics, fluid, strip, s)

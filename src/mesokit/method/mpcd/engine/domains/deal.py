@@ -35,8 +35,15 @@ def distributed(
             error = reason
         if not _any_left(comm, piece is not None, error):
             return
-        rows = np.zeros((0, 1 + 3 * d), np.int64) if piece is None else _packed(piece)
-        yield _unpacked(_sent(comm, rows, to), d)
+        rows = np.zeros((0, 1 + 3 * d), np.int64)
+        if piece is not None:  # all numbers of each particle in a row, as their bits
+            reals = np.concatenate([piece.positions, piece.velocities], axis=1, dtype=float)
+            columns = piece.ids[:, None], reals.view(np.int64), piece.images
+            rows = np.concatenate(columns, axis=1, dtype=np.int64)
+        come = _sent(comm, rows, to)
+        reals = np.ascontiguousarray(come[:, 1 : 1 + 2 * d]).view(float)
+        images = come[:, 1 + 2 * d :].astype(np.int32)
+        yield Piece(come[:, 0], reals[:, :d], reals[:, d:], images)
 
 
 def _any_left(comm: Any, here: bool, error: Exception | None) -> bool:
@@ -61,15 +68,3 @@ def _sent(comm: Any, rows: NDArray[np.int64], to: NDArray[np.int64]) -> NDArray[
     ordered = np.ascontiguousarray(rows[np.argsort(to, kind="stable")])
     comm.Alltoallv([ordered, sent * words], [out, come * words])
     return out
-
-
-def _packed(piece: Piece) -> NDArray[np.int64]:
-    """All numbers of each particle in a row, as their bits in int64."""
-    reals = np.concatenate([piece.positions, piece.velocities], axis=1, dtype=float)
-    columns = piece.ids[:, None], reals.view(np.int64), piece.images
-    return np.concatenate(columns, axis=1, dtype=np.int64)
-
-
-def _unpacked(rows: NDArray[np.int64], d: int) -> Piece:
-    reals = np.ascontiguousarray(rows[:, 1 : 1 + 2 * d]).view(float)
-    return Piece(rows[:, 0], reals[:, :d], reals[:, d:], rows[:, 1 + 2 * d :].astype(np.int32))

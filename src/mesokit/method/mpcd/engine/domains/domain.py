@@ -13,15 +13,8 @@ from mesokit.method.mpcd.engine.cpu.grid import Part
 from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.domains.beads.halo_memory import halo_of, reach_of_beads
-from mesokit.method.mpcd.engine.domains.blocks.region import (
-    Region,
-    Space,
-    keys,
-    own,
-    partners,
-    region_of,
-    shared,
-)
+from mesokit.method.mpcd.engine.domains.blocks import region
+from mesokit.method.mpcd.engine.domains.blocks.region import Space, region_of
 from mesokit.method.mpcd.engine.domains.blocks.tree import Block, Tree
 from mesokit.method.mpcd.engine.domains.messages.mpi import post
 from mesokit.method.mpcd.engine.domains.messages.shared import METER_SIZE, Shared
@@ -37,12 +30,6 @@ FAST = 9.0  # thermal speeds: no particle is faster
 FEW = 512  # rows to a partner that are always there
 
 
-def space_of(numbers: Numbers) -> Space:
-    """The cells of a case, and their images."""
-    wraps = tuple(not shut for shut in numbers.closed)
-    return Space(tuple(numbers.cells), wraps, numbers.case.box.sheared)
-
-
 def axes_to_cut(numbers: Numbers) -> tuple[float, ...]:
     """Weights of lengths, by which axes are cut: where images slide, x and y better stay whole."""
     d = numbers.dimension
@@ -52,34 +39,17 @@ def axes_to_cut(numbers: Numbers) -> tuple[float, ...]:
 class Domain:
     """The cells of one rank, and those that it shares with partners.
 
-    Parameters
-    ----------
-    numbers : Numbers
-        Of the case.
-    comm : mpi4py communicator
-        Of all ranks.
-    tree : Tree
-        The block of each rank.
-    threads : int
-        Of this rank.
-    molecules : int
-        Approximate number that the rank will hold.
-    crowded : bool
-        Whether ranks share cores.
+    `tree` has the block of each rank, `molecules` is the approximate number that this rank will
+    hold, `crowded` is true if ranks share cores.
     """
 
     def __init__(
-        self,
-        numbers: Numbers,
-        comm: Any,
-        tree: Tree,
-        threads: int,
-        molecules: int,
-        crowded: bool,
+        self, numbers: Numbers, comm: Any, tree: Tree, threads: int, molecules: int, crowded: bool
     ) -> None:
         self.crowded = crowded
         self.numbers, self.comm, self.tree, self.threads = numbers, comm, tree, threads
-        self.space, self.rank = space_of(numbers), comm.rank
+        wraps, self.rank = tuple(not shut for shut in numbers.closed), comm.rank
+        self.space = Space(tuple(numbers.cells), wraps, numbers.case.box.sheared)
         self.block = tree.blocks[self.rank]
         self.region = region_of(self.block, self.space, HALO)
         self.regions = [region_of(block, self.space, HALO) for block in tree.blocks]
@@ -89,7 +59,7 @@ class Domain:
         self.reach = HALO + 1 + math.ceil(farthest(numbers))
         if solutes is not None:
             self.reach = max(self.reach, 1 + math.ceil(reach_of_beads(numbers, solutes)))
-        self.partners = partners(self.rank, tree.blocks, self.space, self.reach)
+        self.partners = region.partners(self.rank, tree.blocks, self.space, self.reach)
         self.ghosts = [self._ghosts_of(p) for p in self.partners]
         self.movers = [FEW // 2 + int(0.25 * self._crowd(p)) for p in self.partners]
         beads = numbers.beads
@@ -98,12 +68,13 @@ class Domain:
         self.ghost_slots = each * threads
         self.slots = self.ghost_slots + beads * sum(1 + n for n in self.movers) + self.beads
         self.room = int(SPARE * molecules) + 64 + sum(1 + n for n in self.movers)
-        self._known = _Lookup(self.region, self.space)
 
     def _crowd(self, other: int) -> float:
         """Particles in a layer of cells that this rank and another have in common."""
-        mine, _ = shared(self.region, self.regions[other], self.space, self.tree.blocks[other])
-        theirs, _ = shared(self.regions[other], self.region, self.space, self.block)
+        mine, _ = region.shared(
+            self.region, self.regions[other], self.space, self.tree.blocks[other]
+        )
+        theirs, _ = region.shared(self.regions[other], self.region, self.space, self.block)
         return self.numbers.density * max(len(mine), len(theirs)) / HALO
 
     def _ghosts_of(self, other: int) -> int:
@@ -130,14 +101,20 @@ class Domain:
     @property
     def held(self) -> Held:
         """Cells without a shift that particles of this rank can reach."""
-        region = region_of(self.block, self.space, 1 + math.ceil(farthest(self.numbers)))
+        near = region_of(self.block, self.space, 1 + math.ceil(farthest(self.numbers)))
         size = [math.ceil(length) for length in self.numbers.case.box.size]
-        known = zip(*region, size, self.space.wraps, strict=True)
-        return Held(region.first, tuple(n if on else min(n, all_ - a) for a, n, all_, on in known))
+        known = zip(*near, size, self.space.wraps, strict=True)
+        return Held(near.first, tuple(n if on else min(n, all_ - a) for a, n, all_, on in known))
 
     def known(self, cells: NDArray[np.int64]) -> NDArray[np.int64]:
         """Numbers here of held cells, by their numbers in the box."""
-        return self._known(cells)
+        number, stride = np.zeros(len(cells), np.int64), 1
+        for k, whole in enumerate(self.space.cells):
+            i = (cells % whole - self.region.first[k]) % whole
+            cells = cells // whole
+            number += i * stride
+            stride *= self.region.known[k]
+        return number
 
     def owners(self, positions: NDArray[np.float64]) -> NDArray[np.int64]:
         """The owner (n,) of each place (n, d), by the cells without a shift."""
@@ -152,10 +129,12 @@ class Domain:
         threads = self.threads
         mine, theirs, given = [], [], []
         for p in self.partners:
-            here, there = shared(self.region, self.regions[p], self.space, self.tree.blocks[p])
+            here, there = region.shared(
+                self.region, self.regions[p], self.space, self.tree.blocks[p]
+            )
             mine.append(here)
             theirs.append(there)
-            given.append(shared(self.regions[p], self.region, self.space, self.block)[1])
+            given.append(region.shared(self.regions[p], self.region, self.space, self.block)[1])
         twice = 2 if numbers.virtual == "extrapolate" else 1  # also the flow at surfaces
         more = [1 + ghosts + self.beads for ghosts in self.ghosts]
         out_at = _starts(twice * len(m) + n for m, n in zip(mine, more, strict=True))
@@ -166,10 +145,12 @@ class Domain:
         blocks = [self.tree.blocks[p] for p in self.partners]
         regions = [self.regions[p] for p in self.partners]
         gradient = numbers.case.fluid.collision.gradient_of is not None
+        mixed = np.zeros(-(-self.region.number // LANES) * LANES, bool)
+        mixed[region.own(self.region, self.space, self.block)] = True
         return Shared(
             post=post(self.comm, 4 * q, self.crowded),
-            keys=np.pad(keys(self.region, self.space), (0, LANES)),
-            mixed=self._batches_with_own(),
+            keys=np.pad(region.keys(self.region, self.space), (0, LANES)),
+            mixed=mixed.reshape(-1, LANES).any(axis=1),
             cells=np.array(self.space.cells, np.int64),
             limits=self._limits,
             closed=tuple(float(shut) for shut in numbers.closed),
@@ -190,8 +171,8 @@ class Domain:
             records=zeros(int(out_at[-1]), np.int64),
             counting=zeros((threads, max(q, 1)), np.int64),
             sent=zeros(max(q, 1), np.int64),
-            field_out=zeros(sum(map(len, given)) if gradient else 0),
-            field_in=zeros(sum(map(len, mine)) if gradient else 0),
+            field_out=zeros((sum(map(len, given)) if gradient else 0, 1)),
+            field_in=zeros((sum(map(len, mine)) if gradient else 0, 1)),
             ghost_place=zeros((threads, self.ghosts_of_thread), np.int64),
             ghost_cell=zeros((threads, self.ghosts_of_thread), np.int64),
             ghost_owner=zeros((threads, self.ghosts_of_thread), np.int64),
@@ -209,11 +190,6 @@ class Domain:
             slots=self.ghost_slots,
             room=self.room,
         )
-
-    def _batches_with_own(self) -> NDArray[np.bool_]:
-        mine = np.zeros(-(-self.region.number // LANES) * LANES, bool)
-        mine[own(self.region, self.space, self.block)] = True
-        return np.asarray(mine.reshape(-1, LANES).any(axis=1))
 
     @property
     def _limits(self) -> tuple[tuple[float, ...], ...]:
@@ -237,7 +213,6 @@ class Domain:
         )
 
     def _pieces(self, probes: NDArray[np.float64], rank: int) -> NDArray[np.int64]:
-        """Pieces near a rank's block."""
         near = np.ones(len(probes), bool)
         for k, (low, high) in enumerate(zip(*self.tree.blocks[rank], strict=True)):
             whole = self.space.cells[k]
@@ -262,22 +237,6 @@ def owners(
 
 
 NEAR = 4.0  # cells from a block: a piece of surface so far away may matter in it
-
-
-class _Lookup:
-    """Numbers of held cells by their numbers in the box."""
-
-    def __init__(self, region: Region, space: Space) -> None:
-        self.region, self.space = region, space
-
-    def __call__(self, cells: NDArray[np.int64]) -> NDArray[np.int64]:
-        number, stride = np.zeros(len(cells), np.int64), 1
-        for k, whole in enumerate(self.space.cells):
-            i = (cells % whole - self.region.first[k]) % whole
-            cells = cells // whole
-            number += i * stride
-            stride *= self.region.known[k]
-        return number
 
 
 def every_of(numbers: Numbers) -> int:

@@ -14,24 +14,26 @@ from mesokit.loops.threads import Threads
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
-from mesokit.method.mpcd.engine.domains.blocks.balance import Balance, Load, still_good
+from mesokit.method.mpcd.engine.domains.blocks.balance import (
+    Balance,
+    Load,
+    Window,
+    still_good,
+    waiting,
+)
 from mesokit.method.mpcd.engine.domains.blocks.tree import Tree, divided
-from mesokit.method.mpcd.engine.domains.blocks.window import Window, waiting
 from mesokit.method.mpcd.engine.domains.deal import distributed
 from mesokit.method.mpcd.engine.domains.domain import Domain, axes_to_cut, owners
-from mesokit.method.mpcd.engine.domains.here import Here
+from mesokit.method.mpcd.engine.domains.messages import shared
 from mesokit.method.mpcd.engine.domains.messages.mpi import crowded
-from mesokit.method.mpcd.engine.domains.messages.shared import (
-    DONE,
-    FAR,
-    FAULTS,
-    FULL,
-    MOLECULES,
-    STRETCHED,
+from mesokit.method.mpcd.engine.domains.readings import Here, SharedReadings, SharedSolutes
+from mesokit.method.mpcd.engine.pieces import (
+    ROOT,
+    SPREAD,
+    Piece,
+    Spread,
+    pieces,
 )
-from mesokit.method.mpcd.engine.domains.readings import SharedReadings, SharedSolutes
-from mesokit.method.mpcd.engine.domains.state import ROOT, SPREAD, Spread
-from mesokit.method.mpcd.engine.pieces import Piece, of_state, pieces, require_finite
 from mesokit.scalar.system import TICK
 
 
@@ -45,21 +47,19 @@ def pieces_of(memory: Memory) -> Iterator[Piece]:
 
 
 GROWTH = 1.1  # times as many molecules as there are, when arrays become too small
+FAULT_TEXTS = {
+    shared.FULL: "more particles beyond the cells around a rank's block than it has room for; "
+    "expected fewer ranks",
+    shared.STRETCHED: "a bead of solutes went farther in a step, or its bonds are longer, than "
+    "ranks can follow; expected fewer ranks or a shorter fluid.timestep",
+    shared.FAR: "a particle came to a cell of a rank that is no neighbour; expected fewer ranks",
+}
 
 
 class Ranks(CPU):
     """The part of a fluid in the block of one rank; all ranks call its methods together.
 
-    Parameters
-    ----------
-    case : Case
-        What to simulate; the same on all ranks.
-    threads : int
-        Of this rank.
-    measures : sequence of str
-        As of `CPU`.
-    comm : communicator of mpi4py
-        Of all ranks.
+    Parameters are those of `CPU`, with the threads of this rank, and the communicator (mpi4py).
     """
 
     readings: SharedReadings
@@ -75,7 +75,6 @@ class Ranks(CPU):
         self._allocate(tree, self.numbers.filling.molecules // comm.size)
 
     def _allocate(self, tree: Tree, molecules: int) -> None:
-        """Allocate memory for this rank's block in a tree."""
         size = self.threads.size
         earlier = self.memory if hasattr(self, "memory") else None
         self.domain = Domain(self.numbers, self.comm, tree, size, molecules, self._crowded)
@@ -98,31 +97,20 @@ class Ranks(CPU):
         """Store the particles of this block, out of these and those of other ranks."""
         beads, held = self.numbers.beads, 0
         self._count(0)
-        come = distributed(self.comm, particles, self.domain.owners, beads, self.dimension)
-        for piece in come:
+        owners = self.domain.owners
+        for piece in distributed(self.comm, particles, owners, beads, self.dimension):
             first, held = held, held + len(piece.ids) // beads
             if held > self.domain.room:
                 self._make_room(held)
             self._count(held)
             self.memory.put(*piece, first=first)
 
-    def _hold(
-        self, ids: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
-    ) -> None:
-        """Store these particles, and no others."""
-        molecules = len(ids) // self.numbers.beads
-        if molecules > self.domain.room:
-            self._allocate(self.domain.tree, molecules)
-        self._count(molecules)
-        self.memory.put(ids, positions, velocities, images)
-
     def _count(self, molecules: int) -> None:
-        """Set the number of molecules in memory."""
         fluid = self.memory.fluid
         filling: Any = fluid.particles.filling
         filling = filling._replace(molecules=molecules)
         self.memory.fluid = fluid._replace(particles=fluid.particles._replace(filling=filling))
-        fluid.cells.shared.noted[MOLECULES] = molecules
+        fluid.cells.shared.noted[shared.MOLECULES] = molecules
 
     def _make_room(self, least: int = 0) -> None:
         """Allocate larger arrays, for the particles of this rank and at least so many molecules."""
@@ -131,7 +119,10 @@ class Ranks(CPU):
         molecules = int(GROWTH * len(ids) / self.numbers.beads) + 1
         self._allocate(self.domain.tree, max(molecules, least))
         self._go_on_from(memory)
-        self._hold(ids, *rows)
+        if (held := len(ids) // self.numbers.beads) > self.domain.room:
+            self._allocate(self.domain.tree, held)
+        self._count(held)
+        self.memory.put(ids, *rows)
 
     def _go_on_from(self, memory: Memory) -> None:
         """Copy all that belongs to no particle of the fluid from earlier memory."""
@@ -154,11 +145,11 @@ class Ranks(CPU):
             with self._window.timing(self):
                 super()._steps(left, what)
             noted = self.memory.fluid.cells.shared.noted
-            self.memory.step = before + int(noted[DONE])
-            left -= int(noted[DONE])
+            self.memory.step = before + int(noted[shared.DONE])
+            left -= int(noted[shared.DONE])
             self._check_messages(noted)
             if steps:
-                self._count(int(noted[MOLECULES]))
+                self._count(int(noted[shared.MOLECULES]))
             if left <= 0:
                 return
             self._make_room()
@@ -168,13 +159,10 @@ class Ranks(CPU):
     def sort(self) -> None:
         with self._window.timing(self):
             super().sort()
-        if self.step > 0:
-            self._balance()
-
-    def _balance(self) -> None:
-        """Move borders if the last two windows were unbalanced."""
-        windows = self.balancing.received_times()
-        if windows:
+        if self.step == 0:
+            return
+        # Borders move if the last two windows were unbalanced.
+        if windows := self.balancing.received_times():
             kept = still_good(self.domain.tree, windows, self.balancing.limit)
             if kept.nodes != self.domain.tree.nodes:
                 self.rebalance(kept)
@@ -188,7 +176,7 @@ class Ranks(CPU):
         tree = divided(cells, self.comm.size, weights, load.layers, kept)
         if tree.blocks != self.domain.tree.blocks:
             self.move_borders(tree)
-        self.balancing.moved(self.step, tree.blocks)
+        self.balancing.moved()
 
     def _costs(self) -> Floats:
         """Seconds of this rank's work in each of its cells, x varying fastest."""
@@ -224,31 +212,18 @@ class Ranks(CPU):
 
     def balance(self) -> dict[str, Any]:
         """Number of moves of borders, and most over mean of the ranks' work at first and lately."""
-        known = self.balancing
-        found: dict[str, Any] = {"borders moved": len(known.moves)}
-        if not np.isnan(known.first):
-            found |= {"most over mean at first": known.first, "of late": known.last}
-        return found
+        known, found = self.balancing, {"borders moved": self.balancing.moves}
+        if np.isnan(known.first):
+            return found
+        return found | {"most over mean at first": known.first, "of late": known.last}
 
     def _check_messages(self, noted: NDArray[np.int64]) -> None:
-        faults, post = int(noted[FAULTS]), self.memory.fluid.cells.shared.post
+        faults, post = int(noted[shared.FAULTS]), self.memory.fluid.cells.shared.post
         if post.flag[1]:
             raise RunError(f"step {self.step}: a message to another rank failed")
-        if faults & FULL:
-            raise RunError(
-                f"step {self.step}: more particles beyond the cells around a rank's block than it "
-                "has room for; expected fewer ranks"
-            )
-        if faults & STRETCHED:
-            raise RunError(
-                f"step {self.step}: a bead of solutes went farther in a step, or its bonds are "
-                "longer, than ranks can follow; expected fewer ranks or a shorter fluid.timestep"
-            )
-        if faults & FAR:
-            raise RunError(
-                f"step {self.step}: a particle came to a cell of a rank that is no neighbour; "
-                "expected fewer ranks"
-            )
+        for fault, text in FAULT_TEXTS.items():
+            if faults & fault:
+                raise RunError(f"step {self.step}: {text}")
 
     @property
     def here(self) -> Here:
@@ -270,36 +245,17 @@ class Ranks(CPU):
 
     # --- its state ------------------------------------------------------------------------------
 
-    def state(self) -> dict[str, Any]:
-        """As of `CPU`; positions, velocities and images come piece by piece (`Spread`), until the
-        next step."""
-        self.check()
-        comm, shape, rows = self.comm, (self.n, self.dimension), self.readings.rows_in_memory
+    def _state_of_particles(self) -> dict[str, Any]:
+        """Positions, velocities and images that come piece by piece, until the next step."""
+        shape, rows = (self.n, self.dimension), self.readings.rows_in_memory
+        kinds = dict.fromkeys(SPREAD, np.float64) | {"images": np.int32}
         return {
-            **(self.solutes.state() if self.solutes else {}),
-            "positions": Spread(comm, shape, np.float64, partial(rows, "positions")),
-            "velocities": Spread(comm, shape, np.float64, partial(rows, "velocities")),
-            "images": Spread(comm, shape, np.int32, partial(rows, "images")),
-            "step": np.int64(self.step),
-            **self.readings.state_of_walls(),
-            "wall_rates": self.readings.wall_rates(),
+            name: Spread(self.comm, shape, kind, partial(rows, name))
+            for name, kind in kinds.items()
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Continue from a state, which only the first rank needs."""
         root = self.comm.rank == ROOT
         plain = {k: np.asarray(v) for k, v in state.items() if k not in SPREAD} if root else None
-        plain = self.comm.bcast(plain, ROOT)
-        self.readings.forget()
-        self.memory.fluid.taken.faults[:] = 0
-        self._take(self._given(state) if root else ())
-        memory = self.memory
-        memory.step = int(plain["step"])
-        self.readings.restore_walls(plain)
-        memory.wall_rates[:] = plain["wall_rates"]
-        if self.solutes is not None:
-            self.solutes.restore(plain)
-
-    def _given(self, state: Mapping[str, Any]) -> Iterator[Piece]:
-        require_finite(state)
-        yield from of_state(state, (self.n, self.dimension), self.numbers.beads)
+        self._restore(self.comm.bcast(plain, ROOT), self._given(state) if root else ())

@@ -1,7 +1,8 @@
-"""Readings for observables where each rank has a part of the particles."""
+"""Readings where each rank has a part of the particles, of all ranks together or of one alone."""
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,20 @@ from mesokit.loops.threads import Threads
 from mesokit.method.mpcd.engine.beads.readings import SoluteReadings, energy_in
 from mesokit.method.mpcd.engine.beads.state import OWN
 from mesokit.method.mpcd.engine.cpu.memory import Floats, Memory
-from mesokit.method.mpcd.engine.domains.state import ROOT
 from mesokit.method.mpcd.engine.measure.readings import Observed, Readings
+from mesokit.method.mpcd.engine.pieces import ROOT, Spread, pieces
+
+
+def rows_of_all(
+    comm: Any, here: NDArray[np.int64], rows: Floats
+) -> tuple[NDArray[np.int64], Floats]:
+    """Numbers (n,) and rows (n, columns) of all ranks, of which this one has some."""
+    words = 1 + rows.shape[1]
+    sent = np.concatenate([here[:, None], np.ascontiguousarray(rows).view(np.int64)], axis=1)
+    counts = np.array(comm.allgather(len(here)))
+    whole = np.empty((counts.sum(), words), np.int64)
+    comm.Allgatherv(np.ascontiguousarray(sent), [whole, counts * words])
+    return whole[:, 0], np.ascontiguousarray(whole[:, 1:]).view(float)
 
 
 class SharedReadings(Readings):
@@ -61,13 +74,9 @@ class SharedReadings(Readings):
 
     def together(self, here: NDArray[np.int64], rows: Floats, number: int) -> Floats:
         """Gather rows (number, columns) on all ranks; this one has those with numbers `here`."""
-        words = 1 + rows.shape[1]
-        sent = np.concatenate([here[:, None], np.ascontiguousarray(rows).view(np.int64)], axis=1)
-        counts = np.array(self.comm.allgather(len(here)))
-        whole = np.empty((counts.sum(), words), np.int64)
-        self.comm.Allgatherv(np.ascontiguousarray(sent), [whole, counts * words])
+        numbers, every = rows_of_all(self.comm, here, rows)
         out = np.empty((number, rows.shape[1]))
-        out[whole[:, 0]] = np.ascontiguousarray(whole[:, 1:]).view(float)
+        out[numbers] = every
         return out
 
     def numbers_here(self, first: int, last: int) -> NDArray[np.int64]:
@@ -82,15 +91,11 @@ class SharedReadings(Readings):
         part = slice(*np.searchsorted(own_ids, (first, last)))
         return own_ids[part], self.memory.columns(name, self.memory.places[order[part]])
 
-    def _seen_of(self, rows: Floats) -> Observed:
-        d = self.dimension
-        return Observed(rows[:, :d], rows[:, d : 2 * d], rows[:, 2 * d :].astype(np.int32))
-
     def wall_rates(self) -> Floats:
         """Rates of the flow at all pieces of surface, each from the owner of its probe."""
         virtual = self.memory.walls.virtual
         if not virtual or not len(virtual.rates):
-            return self.memory.wall_rates.copy()
+            return super().wall_rates()
         mine = self.memory.domain.owners(virtual.probes) == self.comm.rank
         bits = np.where(mine[:, None], virtual.rates.view(np.int64), 0)
         return self.reduced(bits).view(float)
@@ -98,13 +103,11 @@ class SharedReadings(Readings):
     def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Observed:
         asked = np.arange(self.n) if ids is None else np.asarray(ids, np.int64)
         here, which = self.own_rows(asked)
-        rows = self.rows_at(self.memory.places[which], unwrapped)
-        return self._seen_of(self.together(here, rows, len(asked)))
-
-    def rows_at(self, places: NDArray[np.int64], unwrapped: bool) -> Floats:
-        """The same as `seen_at` in one array (n, 3 d)."""
-        seen = self.seen_at(places, unwrapped)
-        return np.concatenate([seen.positions, seen.velocities, seen.images.astype(float)], axis=1)
+        seen = self.seen_at(self.memory.places[which], unwrapped)
+        columns = [seen.positions, seen.velocities, seen.images.astype(float)]
+        rows = self.together(here, np.concatenate(columns, axis=1), len(asked))
+        r, v, images = np.split(rows, 3, axis=1)
+        return Observed(r, v, images.astype(np.int32))
 
 
 class SharedSolutes(SoluteReadings):
@@ -137,12 +140,8 @@ class SharedSolutes(SoluteReadings):
         beads, d = self.state_of, self.shape[1]
         r, v = beads.r.reshape(self.shape), beads.v.reshape(self.shape)
         own = beads.halo.numbers[OWN, : beads.halo.count[OWN]]
-        sent = np.concatenate([own[:, None].astype(float), r[own], v[own]], axis=1)
-        counts = np.array(self.comm.allgather(len(own))) * (1 + 2 * d)
-        whole = np.empty((counts.sum() // (1 + 2 * d), 1 + 2 * d))
-        self.comm.Allgatherv(np.ascontiguousarray(sent), [whole, counts])
-        own_ids = whole[:, 0].astype(np.int64)
-        r[own_ids], v[own_ids] = whole[:, 1 : 1 + d], whole[:, 1 + d :]
+        ids, rows = rows_of_all(self.comm, own, np.concatenate([r[own], v[own]], axis=1))
+        r[ids], v[ids] = rows[:, :d], rows[:, d:]
         self.known = True
 
     def potential_energy(self) -> float:
@@ -172,3 +171,47 @@ class SharedSolutes(SoluteReadings):
         own, halo = np.flatnonzero(owner == self.comm.rank), self.state_of.halo
         halo.numbers[OWN, : len(own)], halo.count[OWN] = own, len(own)
         halo.seen[:] = -9
+
+
+class Here:
+    """Readings of the particles of this rank, by id, without messages to other ranks.
+
+    Positions in the box, velocities and image counts (n, d) are those of some particles `ids`.
+    Beads of solutes, which all ranks can read, count as those of the first rank.
+    """
+
+    def __init__(self, readings: SharedReadings) -> None:
+        self.readings = readings
+
+    def ids(self, first: int, last: int) -> NDArray[np.int64]:
+        """Ids of the particles of this rank from `first` to before `last`, rising."""
+        readings, n = self.readings, self.readings.n
+        own = readings.numbers_here(min(first, n), min(last, n))
+        beads = np.arange(max(first, n), max(last, n) if readings.comm.rank == ROOT else 0)
+        return np.concatenate([own, beads])
+
+    def _of(self, name: str, ids: NDArray[np.int64]) -> NDArray[Any]:
+        readings, kind = self.readings, np.int32 if name == "images" else np.float64
+        out = np.empty((len(ids), readings.dimension), kind)
+        own = int(np.searchsorted(ids, readings.n))
+        _, which = readings.own_rows(ids[:own])
+        for first, last in pieces(0, own):
+            places = readings.memory.places[which[first:last]]
+            out[first:last] = getattr(readings.seen_at(places, False), name)
+        if readings.solutes is not None:
+            beads = Observed(*readings.solutes.folded())
+            out[own:] = getattr(beads, name)[ids[own:] - readings.n]
+        return out
+
+    positions = functools.partialmethod(_of, "positions")
+    velocities = functools.partialmethod(_of, "velocities")
+    images = functools.partialmethod(_of, "images")
+
+    def spread(self, number: int, places: NDArray[np.int64], rows: NDArray[Any]) -> Spread:
+        """An array of `number` rows, of which this rank has `rows` at these places (rising)."""
+
+        def some(first: int, last: int) -> tuple[NDArray[np.int64], NDArray[Any]]:
+            part = slice(*np.searchsorted(places, (first, last)))
+            return places[part], rows[part]
+
+        return Spread(self.readings.comm, (number, *rows.shape[1:]), rows.dtype, some)

@@ -9,21 +9,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, share, strip_at
 from mesokit.loops.threads import barrier
+from mesokit.method.mpcd.engine.beads import state
 from mesokit.method.mpcd.engine.beads.moving import MovingBeads, accelerated
 from mesokit.method.mpcd.engine.beads.neighbours import apart
-from mesokit.method.mpcd.engine.beads.state import (
-    inverse_mass_of,
-    load_place,
-    load_velocity,
-    store_velocity,
-)
-from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet
+from mesokit.method.mpcd.engine.beads.verlet import SUBSTEP_BITS, drift, flown, kick, verlet
 from mesokit.method.mpcd.engine.cpu.groups import STREAM
-from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid, momentum_scale
+from mesokit.method.mpcd.engine.cpu.physics import has_solid, momentum_scale
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_values, store_values
 from mesokit.method.mpcd.engine.embedded.near import has_left, note
 from mesokit.method.mpcd.engine.embedded.state import (
@@ -34,10 +28,11 @@ from mesokit.method.mpcd.engine.embedded.state import (
     TOO_HARD,
     Embedded,
 )
+from mesokit.method.mpcd.engine.where import where
 from mesokit.potential.protocol import central
 from mesokit.scalar.fixed_point import add_integers, added_quanta, integers
-from mesokit.scalar.jit import by_type, elementwise, scalar
-from mesokit.scalar.vector import added_scaled, dot, scaled
+from mesokit.scalar.jit import elementwise, scalar
+from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 MOST_UNITS = 2.0**52  # that a particle may hand over at once: a thousand thermal momenta
 
@@ -68,16 +63,11 @@ def _(moving, counter, physics, time):
     solutes, embedded, thread = moving.solutes, moving.embedded, moving.solutes.worker.thread
     for i in range(solutes.first, solutes.last):
         start = load_values(embedded.lists.made_at, np.uint64(i * len(physics.zero)), physics.zero)
-        if has_left(start, load_place(solutes.beads, i, physics.zero), embedded.skin):
-            note(embedded.faults[thread], step_of(counter), TOO_FAR, i + 1)
+        if has_left(start, state.load_place(solutes.beads, i, physics.zero), embedded.skin):
+            step = np.int64(counter.step) & np.int64((1 << SUBSTEP_BITS) - 1)
+            note(embedded.faults[thread], step, TOO_FAR, i + 1)
     for n in range(embedded.number[thread, COUNT]):
         drift_particle(moving, n, counter, physics, time)
-
-
-@scalar
-def step_of(counter):
-    """The step of a counter that also counts sub-steps (see `verlet`)."""
-    return np.int64(counter.step) & np.int64((1 << 40) - 1)
 
 
 @scalar
@@ -94,20 +84,11 @@ def drift_particle(moving, n, counter, physics, time):
         embedded.partners[thread, n] = ALL_BEADS
 
 
-@by_type
+@where("(added_scaled(r, time, v), v)", physics=has_solid)
 def moved(physics, time, counter, moving, lane, r, v):
     """Place and velocity of the particle in a lane after a sub-step without forces."""
-    if kind_of_solid(physics) is Nothing:
-        return lambda physics, time, counter, moving, lane, r, v: (
-            added_scaled(r, time, v),
-            v,
-        )
-
-    def among_solids(physics, time, counter, moving, lane, r, v):
-        m, number = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
-        return flown(physics, time, counter, number, m, r, v, moving.solutes.impulse)
-
-    return among_solids
+    m, number = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
+    return flown(physics, time, counter, number, m, r, v, moving.solutes.impulse)
 
 
 @scalar
@@ -135,11 +116,11 @@ def _(moving, step, box, physics, time):
         for t in range(worker.threads):
             total = plus(embedded.taken[t], i * len(zero), total)
         v = added_scaled(
-            load_velocity(beads, i, zero),
-            unit * inverse_mass_of(beads, i),
+            state.load_velocity(beads, i, zero),
+            unit * state.inverse_mass_of(beads, i),
             floats(total),
         )
-        store_velocity(beads, i, v)
+        state.store_velocity(beads, i, v)
 
 
 @scalar
@@ -153,7 +134,7 @@ def kick_particle(moving, n, step, box, physics, time):
     # of the potential add nothing, so both give the same bits.
     for k in range(count if count != ALL_BEADS else len(beads.cell)):
         j = embedded.beads[thread, n * PARTNERS + k] if count != ALL_BEADS else k
-        separation = apart(box, load_place(beads, j, r), r)
+        separation = apart(box, state.load_place(beads, j, r), r)
         square = dot(separation, separation)
         _, force_over_r = central(embedded.potential, square)
         if force_over_r != 0.0:
@@ -161,7 +142,7 @@ def kick_particle(moving, n, step, box, physics, time):
                 note(embedded.faults[thread], step, TOO_HARD, j + 1)
             else:
                 units = added_quanta(scaled(time * force_over_r, separation), scale, integers(zero))
-                given = all_added(given, units)
+                given = added(given, units)
                 add_integers(embedded.taken[thread, j * d : (j + 1) * d], opposite(units))
     m = mass_in_lane(physics, moving.particles, embedded.lane[thread, n])
     v = added_scaled(v, 1.0 / (scale * m), floats(given))
@@ -169,14 +150,8 @@ def kick_particle(moving, n, step, box, physics, time):
 
 
 @elementwise
-def all_added(a, b):
-    """The sum of two vectors of whole numbers."""
-    return "a[{k}] + b[{k}]"
-
-
-@elementwise
 def opposite(a):
-    """A vector of whole numbers, the other way."""
+    """The opposite of a vector of whole numbers."""
     return "-a[{k}]"
 
 

@@ -1,4 +1,4 @@
-"""The energy of solutes in the fluid that they act on, and what went wrong with them."""
+"""The energy of solutes in the fluid that they act on, and the faults of their sub-steps."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,29 +7,28 @@ from mesokit.errors import RunError
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import lanes_in, share, strip_at, strips_in
 from mesokit.loops.threads import Worker
+from mesokit.method.mpcd.engine.beads.interactions import first_fault
 from mesokit.method.mpcd.engine.beads.neighbours import apart
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
 from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
 from mesokit.method.mpcd.engine.embedded.near import find_beads
-from mesokit.method.mpcd.engine.embedded.state import STEP, TOO_FAR, TOO_HARD, WHAT, WHICH
+from mesokit.method.mpcd.engine.embedded.state import TOO_FAR, TOO_HARD
 from mesokit.potential.protocol import central
 from mesokit.scalar.fixed_point import quanta, total
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
 
-MOST = 2.0**60  # units of energy of one pair: of particles that overlap, it is not told exactly
+MOST = 2.0**60  # units of energy of one pair: of particles that overlap it is not exact
 
 
 def energy_in_fluid(memory: Memory) -> float:
     """Potential energy of all beads and particles of the fluid."""
-    scale, particles = memory.numbers.units["energy"], memory.fluid.particles
-    sums = np.zeros((memory.strips, 1), np.int64)
+    scale, sums = memory.numbers.units["energy"], np.zeros((memory.strips, 1), np.int64)
     alone = Worker(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
-    stamp = np.int64(-1 - memory.step)
-    place = stamp, memory.box, memory.solutes, particles
-    sum_energies(alone, *place, memory.physics.zero, scale, sums)
+    given = memory.box, memory.solutes, memory.fluid.particles, memory.physics.zero
+    sum_energies(alone, np.int64(-1 - memory.step), *given, scale, sums)
     return float(total(sums, scale)[0])
 
 
@@ -57,11 +56,10 @@ def energy_units(embedded, beads, box, r, j, scale):
 
 
 def refuse_faults(faults: NDArray[np.int64], skin: float, substeps: int) -> None:
-    """Raise RunError if a bead or a particle near one did what its sub-steps cannot follow."""
-    noted = faults[faults[:, STEP] > 0]
-    if not len(noted):
+    """Raise RunError if a bead or a particle near one went beyond what sub-steps can follow."""
+    if (found := first_fault(faults)) is None:
         return
-    step, what, which = min(map(tuple, noted[:, [STEP, WHAT, WHICH]].tolist()))
+    step, what, which = found
     if what == TOO_FAR:
         raise RunError(
             f"step {step}: bead {which} went farther than solutes.skin = {skin:g} in a timestep; "

@@ -6,29 +6,14 @@ Where solutes collide with the fluid, this costs nothing: it is another pass (se
 import numpy as np
 
 from mesokit.geometry.protocol import leaps
-from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import (
-    LANES,
-    lanes_in,
-    share,
-    strip_at,
-    strips_in,
-    sums_length,
-)
+from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in, sums_length
 from mesokit.method.mpcd.collision.protocol import contribute
+from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, STREAM
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW, forget, look_around_strip
-from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid
-from mesokit.method.mpcd.engine.cpu.stages import (
-    add_strip,
-    bin_strip,
-    bounce_strip,
-    collide_strip,
-    gather_strip,
-    stream_strip,
-)
+from mesokit.method.mpcd.engine.cpu.physics import has_solid
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     add_values,
@@ -39,7 +24,8 @@ from mesokit.method.mpcd.engine.cpu.strips.rows import (
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
 from mesokit.method.mpcd.engine.embedded.near import choose_near, find_beads
 from mesokit.method.mpcd.engine.embedded.state import COUNT
-from mesokit.scalar.jit import by_type, optional, scalar
+from mesokit.method.mpcd.engine.where import where
+from mesokit.scalar.jit import optional, scalar
 from mesokit.scalar.vector import added_scaled
 
 
@@ -67,21 +53,25 @@ def stream_around(worker, now, physics, fluid, beads):
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
         ids = particles.ident[places]
         if now.flags & COLLIDE:
-            gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
-            collide_strip(physics, now.old, strip, gathered)
+            stages.gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
+            stages.collide_strip(physics, now.old, strip, gathered)
         if now.flags & STREAM:
             near = choose_near(worker, now, physics, beads, strip, s, lanes, chosen)
             look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
-            behind = stream_strip(physics, strip, clear, marks)
-            if behind != 0:
+            left = stages.stream_strip(physics, strip, clear, marks)
+            if left != 0:
                 for j in range(near):  # they meet walls in sub-steps
                     marks[chosen[j]] = 0
-                far = bounce_strip(physics, now.counter, strip, lanes, behind, ids, marks, impulse)
+                far = stages.bounce_strip(
+                    physics, now.counter, strip, lanes, left, ids, marks, impulse
+                )
                 forget(fluid.room, s, far)
-            bin_strip(physics, now, strip, cell, ids, terms)
+            stages.bin_strip(physics, now, strip, cell, ids, terms)
             for j in range(near):
                 cell[chosen[j]] = fluid.cells.number  # which takes what must not act
-            add_strip(cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
+            stages.add_strip(
+                cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero)
+            )
 
 
 @stage
@@ -93,17 +83,11 @@ def put_back(worker, now, physics, fluid, beads):
             put_one_back(worker, now, physics, fluid, embedded, n)
 
 
-@by_type
+@where(physics=has_solid)
 def forget_leap(physics, room, lane, displacement):
-    """Look around anew where a particle went farther than a stride."""
-    if kind_of_solid(physics) is Nothing:
-        return lambda physics, room, lane, displacement: None
-
-    def among_solids(physics, room, lane, displacement):
-        if leaps(physics.solid, displacement):
-            forget(room, lane // LANES, 1 << (lane % LANES // FEW))
-
-    return among_solids
+    """Forget the clear distance where a particle went farther than a stride."""
+    if leaps(physics.solid, displacement):
+        forget(room, lane // LANES, 1 << (lane % LANES // FEW))
 
 
 @scalar

@@ -6,10 +6,8 @@ library functions that take several rows at a time by another way than the last 
 exact, so that nothing depends on the pieces.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +17,9 @@ from mesokit.method.mpcd.engine.cpu.memory import Floats
 from mesokit.method.mpcd.engine.measure import sums as measure
 from mesokit.method.mpcd.engine.measure.readings import Observed, Readings
 from mesokit.method.mpcd.engine.pieces import pieces
+from mesokit.method.mpcd.molecule import Molecule
+from mesokit.potential import Bond, Pair
 from mesokit.scalar.bin_sums import BinSums
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.molecule import Molecule
-    from mesokit.potential import Bond, Pair
 
 Integers = NDArray[np.int64]
 Terms = tuple[Integers, Sequence[NDArray[Any]]]  # bins (m,), and terms (m,) of each kind in them
@@ -76,10 +72,15 @@ class ByPieces:
         return sums.values(self.readings.reduced)
 
     def potential_energy(self) -> float:
-        """Of all bonds, angles and pairs of beads, and of solutes near walls."""
+        """Energy of all bonds, angles and pairs of beads, and of solutes near walls."""
         solutes, molecule = self.readings.solutes, self.readings.numbers.case.fluid.molecule
         beads = 0.0 if solutes is None else solutes.potential_energy()
-        return beads if molecule is None else beads + self._energy_of(molecule)
+        if molecule is None:
+            return beads
+        sums = BinSums(1, [self.readings.numbers.case.fluid.kT])
+        for energies in self._energies(molecule):
+            sums.add(np.zeros(len(energies), np.int64), [energies])
+        return beads + float(sums.values(self.readings.reduced)[0, 0])
 
     def _particles(self, first: int, last: int) -> Iterator[Some]:
         readings = self.readings
@@ -120,18 +121,9 @@ class ByPieces:
         return self.readings.seen_at(molecules.ravel(), False)
 
     def _between(self, seen: Observed, links: Integers) -> Floats:
-        """Vectors along links (n, 2) of the beads of each molecule."""
         first = np.arange(0, len(seen.positions), self.beads)[:, None, None]
-        return self.readings.separation(
-            seen.positions, seen.images, *(first + links).reshape(-1, 2).T
-        )
-
-    def _energy_of(self, molecule: Molecule) -> float:
-        """Potential energy of the molecules of the fluid."""
-        sums = BinSums(1, [self.readings.numbers.case.fluid.kT])
-        for energies in self._energies(molecule):
-            sums.add(np.zeros(len(energies), np.int64), [energies])
-        return float(sums.values(self.readings.reduced)[0, 0])
+        pairs = (first + links).reshape(-1, 2)
+        return self.readings.separation(seen.positions, seen.images, *pairs.T)
 
     def _energies(self, molecule: Molecule) -> Iterator[Floats]:
         bonds, angles = np.array(molecule.bonds), np.array(molecule.angles or ())

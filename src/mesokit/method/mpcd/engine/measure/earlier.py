@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.method.mpcd.engine.beads.readings import fold_beads
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
@@ -34,20 +33,14 @@ class EarlierRows:
         first, last, _ = rows.indices(len(self))
         beads = self.numbers.beads
         start, end = first // beads * beads, -(-last // beads) * beads
-        r, v, image = self._folded(start, end)
+        names = ("positions", "velocities", "images")
+        r, v, image = (np.array(self.state[name][start:end]) for name in names)
+        crossed, zero = np.zeros(r.shape), (0.0,) * r.shape[1]
+        fold_beads(self.box, r.reshape(-1), v.reshape(-1), crossed.reshape(-1), zero)
+        image = image + crossed.astype(np.int32)
         found = {"positions": r, "velocities": v}[self.name]
         if self.name == "positions" and beads > 1:
             leader = np.repeat(np.arange(0, len(r), beads), beads)
             separation = between(r, image, leader, np.arange(len(r)), self.numbers.box, self.box)
             found = r[leader] + separation
         return found[first - start : last - start]
-
-    def _folded(self, first: int, last: int) -> tuple[Floats, Floats, NDArray[np.int32]]:
-        """Places in the box, velocities there, and boxes that each is away."""
-        r, v, image = (
-            np.array(self.state[name][first:last]) for name in ("positions", "velocities", "images")
-        )
-        crossed = np.zeros(r.shape)
-        zero = (0.0,) * r.shape[1]
-        fold_beads(self.box, r.reshape(-1), v.reshape(-1), crossed.reshape(-1), zero)
-        return r, v, image + crossed.astype(np.int32)

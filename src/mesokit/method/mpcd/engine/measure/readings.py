@@ -8,13 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import SLIDING
-from mesokit.loops.layout import (
-    LANES,
-    SCRATCH_ROW,
-    strips_for,
-    sums_length,
-    zeros,
-)
+from mesokit.loops.layout import LANES, SCRATCH_ROW, strips_for, sums_length, zeros
 from mesokit.loops.threads import Threads
 from mesokit.method.mpcd.engine.beads.readings import SoluteReadings
 from mesokit.method.mpcd.engine.cpu.memory import Floats, Memory
@@ -27,7 +21,7 @@ AT_ONCE = 2**10  # strips of a thread: sums of the terms of more particles may o
 
 
 class Observed(NamedTuple):
-    """Particles that were looked at, a row for each."""
+    """Readings of some particles, a row for each."""
 
     positions: Floats
     velocities: Floats
@@ -39,11 +33,8 @@ class Readings:
 
     def __init__(self, memory: Memory, threads: Threads) -> None:
         self.memory, self.numbers, self.threads = memory, memory.numbers, threads
-        self.n, self.beads, self.dimension = (
-            memory.numbers.n,
-            memory.numbers.beads,
-            memory.numbers.dimension,
-        )
+        numbers = memory.numbers
+        self.n, self.beads, self.dimension = numbers.n, numbers.beads, numbers.dimension
         self.wall_steps = 0  # since the warm-up
         self._walls = Tally((memory.fluid.taken.impulse.shape[-1],), self.numbers.units["momentum"])
         self._asked: NDArray | None = None  # ids, for the next time
@@ -101,15 +92,14 @@ class Readings:
         return self.reduced(numbers.sum(axis=0))
 
     def reduced(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The sum over all that have a part of the particles: here, all are in one hand."""
+        """The sum over all ranks; here there is one."""
         return numbers
 
     def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
         """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
-        key = axes, bins
-        if key not in self._seen:
-            self._seen[key] = self._moments(axes, bins)
-        return self._seen[key]
+        if (axes, bins) not in self._seen:
+            self._seen[axes, bins] = self._moments(axes, bins)
+        return self._seen[axes, bins]
 
     def _moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
         d, threads, size = self.dimension, self.threads.size, math.prod(bins)
@@ -169,9 +159,8 @@ class Readings:
         mass, beads = np.zeros(len(ids)), np.asarray(ids) >= self.n
         mass[~beads] = self.numbers.masses_of(ids[~beads])
         if beads.any() and self.solutes is not None:
-            mass[beads] = np.broadcast_to(self.solutes.masses(), self.solutes.shape[:1])[
-                ids[beads] - self.n
-            ]
+            every = np.broadcast_to(self.solutes.masses(), self.solutes.shape[:1])
+            mass[beads] = every[ids[beads] - self.n]
         return mass
 
     def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
@@ -230,7 +219,6 @@ class Readings:
         return r[first] + self.separation(r, image, first, np.arange(len(r)))
 
     def _between(self, pairs: NDArray[np.int64]) -> Floats:
-        """Vectors (n, d) between beads of one molecule."""
         r, _, image = self._gather(None, False)
         return self.separation(r, image, *pairs.T)
 
@@ -260,7 +248,12 @@ class Readings:
         return np.arange(len(self.solutes.kinds()))
 
     def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Observed:
-        slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
+        # Place of each particle in `ids`, by particle id, -1 if none; kept for the next time.
+        if ids is not None and (self._asked is None or not np.array_equal(self._asked, ids)):
+            self._slots_of_asked = np.full(self.n, -1, np.int32)
+            self._slots_of_asked[ids] = np.arange(len(ids))
+            self._asked = ids.copy()
+        slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots_of_asked
         shape = self.n if ids is None else len(ids), self.dimension
         out = Observed(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
         looked = measure.Looked(slots, *out)
@@ -277,14 +270,6 @@ class Readings:
         where = self.memory.box, self.memory.fluid.particles
         self.threads.run(measure.gather_at, zero, *where, unwrapped, looked)
         return out
-
-    def _slots(self, ids: NDArray) -> NDArray[np.int32]:
-        """Place of each particle in `ids`, by particle id, -1 if none; kept for the next time."""
-        if self._asked is None or not np.array_equal(self._asked, ids):
-            self._slots_of_asked = np.full(self.n, -1, np.int32)
-            self._slots_of_asked[ids] = np.arange(len(ids))
-            self._asked = ids.copy()
-        return self._slots_of_asked
 
     def find_stress(self) -> None:
         """Stress of the step that ends now, positive where the fluid above drags the one below.
@@ -312,7 +297,7 @@ class Readings:
 
     @property
     def wall_tally(self) -> Tally:
-        """What surfaces took since the warm-up: momentum (d), then angular momentum (1 or 3).
+        """Momentum (d), then angular momentum (1 or 3), that surfaces took since the warm-up.
 
         These for the lower and upper plate of a slit, or for the bodies in order, all in a row.
         """
@@ -332,6 +317,10 @@ class Readings:
         taken = self.wall_tally.state().items()
         steps = {"wall_steps": np.array(self.wall_steps)}
         return {f"walls/{name}": array.copy() for name, array in taken} | steps
+
+    def wall_rates(self) -> Floats:
+        """Rates of the flow at all pieces of surface."""
+        return self.memory.wall_rates.copy()
 
     def forget_walls(self) -> None:
         """Count anew what surfaces take."""

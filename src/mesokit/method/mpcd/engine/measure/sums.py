@@ -66,7 +66,7 @@ class Bins(NamedTuple):
     scales: tuple  # whole numbers per unit of momentum (d), mass and m v^2
     place: Any  # (threads, LANES)
     terms: Any  # (threads, ...)
-    first: int  # of the strips that are looked at
+    first: int  # of the strips that are read
     last: int  # and where they end
 
 
@@ -147,7 +147,7 @@ def modes(worker, zero, masses, box, particles, waves, out):
 class Looked(NamedTuple):
     """The particles to read, and the memory for their readings."""
 
-    slots: Any  # by particle number: that among those looked at, or -1; or places in memory
+    slots: Any  # by particle number: that among those to be read, or -1; or places in memory
     position: Any
     velocity: Any
     image: Any

@@ -1,34 +1,24 @@
 """The tables and the memory of solids and their virtual particles, made when a case is built."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
+from mesokit.geometry.solids import clearance
 from mesokit.geometry.solids.bodies import Bodies
-from mesokit.geometry.solids.clearance import (
-    Held,
-    clear_squares,
-    free_planes,
-    surface_pieces,
-    whole,
-)
+from mesokit.geometry.solids.clearance import Held
 from mesokit.geometry.solids.contact import MARGIN
 from mesokit.geometry.solids.cut_cells import cut_cells, cut_planes
+from mesokit.geometry.solids.solids import Solids
 from mesokit.loops.layout import BLOCK, LANES, ROW, SCRATCH_ROW, blocks_for, zeros
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.virtual import plates
 from mesokit.method.mpcd.engine.virtual.gradient import numbers_of_piece
 from mesokit.method.mpcd.engine.virtual.particles import KINDS, CellParticles, VirtualParticles
 from mesokit.method.mpcd.engine.virtual.per_cell import ROWS
 from mesokit.scalar.pointer import address
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.geometry.solids.solids import Solids
-    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-
 
 MANY_SIGMA = 4.5  # of the Maxwell distribution: one particle in 20,000 is faster
 MANY_DEVIATIONS = 12.0  # of a Poisson number: no more will ever come
@@ -37,12 +27,12 @@ MANY_DEVIATIONS = 12.0  # of a Poisson number: no more will ever come
 def with_clearance(case: Case, solids: Solids, held: Held | None = None) -> tuple[Bodies, Any]:
     """The solids with the distances that are clear around each place, or around those held; the
     tables that keep them."""
-    held = held or whole(solids)
+    held = held or clearance.whole(solids)
     bend = 0.125 * case.fluid.force.largest_in(case.box.size) * case.fluid.timestep**2
-    clear, parts = clear_squares(solids, bend, held)
+    clear, parts = clearance.clear_squares(solids, bend, held)
     lightest = min(kind.mass for kind in case.fluid.kinds)
     stride = MANY_SIGMA * math.sqrt(case.fluid.kT / lightest) * case.fluid.timestep + bend
-    plane_of, planes, reach = free_planes(solids, clear, stride, bend, held)
+    plane_of, planes, reach = clearance.free_planes(solids, clear, stride, bend, held)
     gap = bend + MARGIN  # no parabola is further from its straight line than a t^2 / 8
     ends = list(zip(solids.room.closed, case.box.size, strict=True))
     kernel = solids.kernel._replace(
@@ -74,7 +64,7 @@ def virtual_particles(
         pieces, outward, probes, terms = plates.surface_pieces(slit, size)
     else:
         starts, keys, corners = cut_cells(solids, numbers.cells, block)
-        pieces, outward, probes, terms = surface_pieces(solids)
+        pieces, outward, probes, terms = clearance.surface_pieces(solids)
     entries = int(np.diff(starts).max(initial=0)) // threads + 1  # at most, of a thread
     per_cell: CellParticles | tuple[()] = ()
     room = 0
@@ -86,7 +76,18 @@ def virtual_particles(
             planes = plates.cut_planes(slit, size, corners)
         else:
             planes = cut_planes(solids, numbers.cells, block)
-        per_cell = _per_cell(planes, pieces, threads, entries, d)
+        normals, heights, places, surfaces, where = planes
+        per_cell = CellParticles(
+            normals=np.ascontiguousarray(normals.T).ravel(),
+            heights=heights,
+            places=np.ascontiguousarray(places.T).ravel(),
+            terms=surfaces,
+            pieces=pieces[where].astype(np.int64),
+            work=zeros((threads, ROWS * SCRATCH_ROW)),
+            state=np.zeros((threads, entries, 3 * d + 1)),
+            entry=np.zeros((threads, entries), np.int64),
+            filled=np.zeros(threads, np.int64),
+        )
     blocks = blocks_for(room)
     return VirtualParticles(
         density=density,
@@ -107,19 +108,4 @@ def virtual_particles(
         filled=np.zeros(threads, np.int64),
         per_cell=per_cell,
         seen=() if domain is None else domain.seen(probes),
-    )
-
-
-def _per_cell(planes: Any, pieces: Any, threads: int, entries: int, d: int) -> CellParticles:
-    normals, heights, places, terms, where = planes
-    return CellParticles(
-        normals=np.ascontiguousarray(normals.T).ravel(),
-        heights=heights,
-        places=np.ascontiguousarray(places.T).ravel(),
-        terms=terms,
-        pieces=pieces[where].astype(np.int64),
-        work=zeros((threads, ROWS * SCRATCH_ROW)),
-        state=np.zeros((threads, entries, 3 * d + 1)),
-        entry=np.zeros((threads, entries), np.int64),
-        filled=np.zeros(threads, np.int64),
     )

@@ -11,12 +11,14 @@ free, q is taken for 0.
 
 import numpy as np
 
-from mesokit.geometry.cut import height, roomy, surface_flow
+from mesokit.geometry.protocol import distance_above, is_clear_cell, surface_flow
 from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, cell_index, in_block
 from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.cpu.strips.terms import read_sums, sums_of_cell
+from mesokit.method.mpcd.engine.virtual.particles import has_gradient
+from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
@@ -45,7 +47,8 @@ def flow_at(rates, piece, above, zero):
     return zero
 
 
-def follow_pieces(worker, now, physics, fluid, walls):
+@where(walls=has_gradient)
+def follow_flow(worker, now, physics, fluid, walls):
     """Update the flow at every EVERYth piece of surface, from this step's cells."""
     _follow(worker, now, physics, fluid.cells.sums, walls.virtual)
     barrier(worker)
@@ -54,19 +57,16 @@ def follow_pieces(worker, now, physics, fluid, walls):
 @by_type
 def _follow(worker, now, physics, sums, virtual):
     """All pieces on one rank; one of several ranks only stores values for `messages.flow`."""
-    if len(field_of(virtual, "seen")) == 0:
-        return lambda worker, now, physics, sums, virtual: _follow_all(
-            worker, now, physics, sums, virtual
-        )
-    return lambda worker, now, physics, sums, virtual: _see(worker, now, physics, sums, virtual)
+    if len(field_of(virtual, "seen")):
+        return lambda *given: _see(*given)
+    return lambda *given: _follow_all(*given)
 
 
 @seldom
 def _follow_all(worker, now, physics, sums, virtual):
     turn = np.int64(now.counter.step) % EVERY
-    begin, end = share(
-        (len(virtual.terms) + EVERY - 1 - turn) // EVERY, worker.thread, worker.threads
-    )
+    number = (len(virtual.terms) + EVERY - 1 - turn) // EVERY
+    begin, end = share(number, worker.thread, worker.threads)
     # Every fourth piece at each step, in turn. A running mean belongs to one piece and one thread.
     for e in range(turn + EVERY * begin, turn + EVERY * end, EVERY):
         for p in range(PROBES):
@@ -113,13 +113,13 @@ def look(virtual, e, p, physics, grid, sums):
         n = with_item(n, k, virtual.outward[e, k])
         corner = floor(probe[k] + grid.origin[k]) - grid.origin[k]
         middle = with_item(middle, k, corner + 0.5)
-    if not roomy(solid, middle):
+    if not is_clear_cell(solid, middle):
         return False, zero + (0.0,)
     found = sums_of_cell(sums, cell_index(probe, grid), physics.terms)
     number, mass, momentum, _, _ = read_sums(physics, found)
     if number < 1.0:
         return False, zero + (0.0,)
-    above = height(solid, virtual.terms[e], middle)
+    above = distance_above(solid, virtual.terms[e], middle)
     u = surface_flow(solid, virtual.terms[e], middle)
     rise = scaled(1.0 / above, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))
     return True, added_scaled(rise, -dot(rise, n), n) + (above,)

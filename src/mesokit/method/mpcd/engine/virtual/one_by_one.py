@@ -6,24 +6,25 @@ cell, whatever its shape. What a gas at the surface's velocity lacks, the fluid'
 (see `gradient`).
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from mesokit.geometry.cut import behind, home, surface_flow
-from mesokit.geometry.protocol import homed
+from mesokit.geometry.protocol import homed, nearest_surface, surface_flow, unit_cell
 from mesokit.geometry.solids.clearance import offset_of
 from mesokit.loops.layout import LANES, ROW, share, strip_at
 from mesokit.loops.threads import barrier
+from mesokit.method.mpcd.engine.cpu.bounce import body_takes
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_WALLS
-from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
+from mesokit.method.mpcd.engine.cpu.physics import field_of, momentum_scale
 from mesokit.method.mpcd.engine.cpu.stages import add_strip, bin_strip, collide_strip, gather_strip
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle, store_particle
 from mesokit.method.mpcd.engine.cpu.strips.terms import number_in_cell
-from mesokit.method.mpcd.engine.virtual.gas import body_takes, thermal
 from mesokit.method.mpcd.engine.virtual.gradient import flow_at
 from mesokit.method.mpcd.engine.virtual.particles import KINDS, MOST
+from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.poisson import poisson_number
@@ -32,6 +33,7 @@ from mesokit.scalar.random import (
     VIRTUAL_NUMBER,
     VIRTUAL_POSITION,
     VIRTUAL_VELOCITY,
+    normals,
     unit_open,
     words,
 )
@@ -68,28 +70,21 @@ class Candidate(NamedTuple):
     number: int
 
 
-@scalar
-def in_grid(corners, entry, place, grid):
-    """A place in a cell of the grid, from numbers between 0 and 1."""
-    for k in range(len(place)):
-        place = with_item(place, k, corners[entry, k] + place[k] - grid.origin[k])
-    return place
-
-
 @seldom
 def place_one(virtual, at, physics, grid, drawn, rows):
     """Note a virtual particle at a place drawn in a cell, with the mean velocity of the gas there,
     if that is solid; 1 if it is, else 0."""
     solid, zero = physics.solid, physics.zero
     a, b, c, e = drawn
-    place = first((unit_open(a), unit_open(b), unit_open(c)), zero)
-    r = in_grid(virtual.corners, at.entry, place, grid)
+    r = first((unit_open(a), unit_open(b), unit_open(c)), zero)  # within the cell
+    for k in range(len(zero)):
+        r = with_item(r, k, virtual.corners[at.entry, k] + r[k] - grid.origin[k])
     x = homed(solid, r)
-    clear, term, foot = behind(solid, x)
+    clear, term, foot = nearest_surface(solid, x)
     if clear >= 0.0 or at.held >= virtual.term.shape[1]:
         return 0
     u = surface_flow(solid, term, x)
-    piece = virtual.pieces[home(solid, foot)]
+    piece = virtual.pieces[unit_cell(solid, foot)]
     if piece >= 0:
         u = added(u, flow_at(virtual.rates, piece, clear, zero))
     strip, lane = virtual.data[at.thread][strip_at(at.held // LANES, rows)], at.held % LANES
@@ -119,8 +114,9 @@ def draw_velocities(virtual, count, worker, now, physics, fluid):
         for i in range(LANES):
             r, u = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
             m = max(lane_mass(physics.masses, strip, i, 2 * d), 1e-300)
-            v = added(u, thermal(physics, m, now.counter, VIRTUAL_VELOCITY, numbers[i], 0))
-            store_particle(strip, i, 0, r + v)
+            a, b, c, e = words(now.counter, VIRTUAL_VELOCITY, numbers[i], 0)
+            thermal = scaled(math.sqrt(physics.kT / m), normals(zero, a, b, c, e))
+            store_particle(strip, i, 0, r + added(u, thermal))
         if now.flags & MEASURE_WALLS:
             take_momentum(virtual, worker, physics, s, strip, fluid.taken.impulse[thread], -1.0)
         bin_strip(physics, now, strip, here, numbers, terms)
@@ -152,8 +148,9 @@ def recoil_one_by_one(worker, now, physics, fluid, walls):
             take_momentum(virtual, worker, physics, s, strip, impulse, 1.0)
 
 
-def top_up(worker, now, physics, fluid, walls):
-    """Top up each cut cell to the mean density.
+@where(walls=lambda walls: len(field_of(walls, "top_up")))
+def top_up_walls(worker, now, physics, fluid, walls):
+    """Top up each cut cell to the mean density, if a wall has this rule.
 
     A fractional density is met on average. Places are uniform in the solid part of the cell.
     """

@@ -83,6 +83,11 @@ class CellParticles(NamedTuple):
     filled: Any
 
 
+def has_gradient(walls: Any) -> bool:
+    """Whether virtual particles move as the fluid's profile would go on, from the same type."""
+    return len(field_of(walls, "gradient")) > 0
+
+
 def drawn_per_cell(walls: Any) -> bool:
     """Whether those of a cell are drawn all at once, from the numba type of `Walls`."""
     per_cell = field_of(field_of(walls, "virtual"), "per_cell")

@@ -13,18 +13,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mesokit.geometry.cut import surface_flow
+from mesokit.geometry.protocol import surface_flow
 from mesokit.geometry.solids.clearance import offset_of, offsets_along
 from mesokit.geometry.solids.cut_cube import share_and_depth
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, SCRATCH_ROW, record_length, share, sums_length
 from mesokit.method.mpcd.collision.protocol import collide, contribute
+from mesokit.method.mpcd.engine.cpu.bounce import body_takes
 from mesokit.method.mpcd.engine.cpu.grid import in_cell
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_WALLS
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale, of_walls
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import asks, many_energy_term, many_tally
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
+    many_energy_term,
+    many_tally,
+    needs_energy,
+)
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_scratch, load_values, store_scratch
-from mesokit.method.mpcd.engine.virtual.gas import body_takes
 from mesokit.method.mpcd.engine.virtual.gradient import flow_at
 from mesokit.method.mpcd.engine.virtual.particles import MOST
 from mesokit.scalar.fixed_point import ROUNDER_BITS, rounded
@@ -32,13 +36,7 @@ from mesokit.scalar.gamma import gamma_number, likely
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.poisson import MOST_MEAN, MOST_NUMBER, none_found, one_more
-from mesokit.scalar.random import (
-    FIRST_VIRTUAL,
-    VIRTUAL_NUMBER,
-    VIRTUAL_VELOCITY,
-    normals,
-    words,
-)
+from mesokit.scalar.random import FIRST_VIRTUAL, VIRTUAL_NUMBER, VIRTUAL_VELOCITY, normals, words
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 ROWS = 14  # of the scratch memory of a batch of cells
@@ -47,23 +45,16 @@ PLACE, THERMAL, MEAN, DEPTH, NUMBER, CHANCE, LEFT, INNER, HEIGHT = 0, 3, 6, 7, 8
 
 
 @scalar
-def moved_by(solid, grid, zero):
-    """The displacement of the grid from the middle of its interval of offsets."""
-    for k in range(len(zero)):
-        many = offsets_along(solid, zero)
-        within = grid.origin[k] * many
-        zero = with_item(zero, k, (within - floor(within) - 0.5) / many)
-    return zero
-
-
-@scalar
 def cut_batch(virtual, start, count, solid, grid, work, zero):
     """Mean number of particles in the solid of each cell, their mean depth, and their mean place.
 
     The place is in the image of the cell next to the term, which may lie beyond an end of the box.
     """
-    cells, d, moved = virtual.per_cell, len(zero), moved_by(solid, grid, zero)
+    cells, d, moved, many = virtual.per_cell, len(zero), zero, offsets_along(solid, zero)
     entries = len(cells.heights)
+    for k in range(d):  # the displacement of the grid from the middle of its interval of offsets
+        within = grid.origin[k] * many
+        moved = with_item(moved, k, (within - floor(within) - 0.5) / many)
     # Tables have a row for each axis and the batch any start in them, so rows are copied first. The
     # last loop then is one over vectors.
     for k in range(d):
@@ -127,7 +118,7 @@ def count_batch(numbers, counter, work):
 def draw_batch(physics, numbers, counter, work):
     """Thermal velocity of one particle, and energy of all about their mean; -1 where in doubt."""
     zero = physics.zero
-    (m,), asked = physics.masses, asks(physics.energy)
+    (m,), asked = physics.masses, needs_energy(physics.energy)
     spread = math.sqrt(physics.kT / m)
     for i in range(LANES):
         a, b, c, e = words(counter, VIRTUAL_VELOCITY, numbers[i], 0)
@@ -196,7 +187,7 @@ def place_particles(virtual, at, physics, now, sums):
     mass = m * number
     v = added_scaled(u, 1.0 / math.sqrt(float(number)), thermal)
     inner = 0.0
-    if asks(physics.energy):
+    if needs_energy(physics.energy):
         inner = work[INNER * SCRATCH_ROW + i]
         if inner < 0.0:
             inner = gamma_number(float(d * (number - 1)), now.counter, VIRTUAL_NUMBER, at.key)
@@ -210,22 +201,17 @@ def place_particles(virtual, at, physics, now, sums):
     terms = scaled(mass, v) + many_energy_term(physics.energy, m_v_squared) + own
     tallied = many_tally(physics.energy, number, m_v_squared)
     start = np.uint64(virtual.cells[entry] * width)
-    add_many(sums, start, number, tallied, rounded(terms, physics.scales))
+    sums[start] += tallied
+    whole = rounded(terms, physics.scales)
+    for k in range(len(whole)):  # each is of `number` particles, which are rounded one by one else
+        place = start + np.uint64(k + 1)
+        sums[place] += whole[k] + np.int64(number - 1) * np.int64(ROUNDER_BITS)
     for k in range(d):
         cells.state[at.thread, at.number, k] = v[k]
         cells.state[at.thread, at.number, d + k] = kept[k]
         cells.state[at.thread, at.number, 2 * d + k] = r[k]
     cells.state[at.thread, at.number, 3 * d] = mass
     cells.entry[at.thread, at.number] = entry
-
-
-@scalar
-def add_many(sums, start, number, tallied, terms):
-    """Add what so many particles have together to the sums of a cell."""
-    sums[start] += tallied
-    for k in range(len(terms)):
-        place = start + np.uint64(k + 1)
-        sums[place] += terms[k] + np.int64(number - 1) * np.int64(ROUNDER_BITS)
 
 
 def recoil_per_cell(worker, now, physics, fluid, walls):

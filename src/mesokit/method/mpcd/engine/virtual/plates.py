@@ -1,16 +1,12 @@
 """The cells that two plates cut, and their pieces of surface: they need no search."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mesokit.case.box import AXES
+from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.clearance import Block, corners_of
-
-if TYPE_CHECKING:
-    from mesokit.geometry.shape.plates import Plates
 
 PROBE = 1.0  # from a plate to where fluid is first looked for: the cell there is never cut
 
@@ -23,10 +19,7 @@ def ends(plates: Plates, size: tuple[int, ...]) -> list[tuple[int, float, float]
 
 
 def cut_cells(
-    plates: Plates,
-    size: tuple[int, ...],
-    cells: tuple[int, ...],
-    block: Block | None = None,
+    plates: Plates, size: tuple[int, ...], cells: tuple[int, ...], block: Block | None = None
 ) -> tuple[Any, ...]:
     """As `clearance.cut_cells`, for the one interval of offsets: starts, numbers and corners."""
     where = corners_of(cells, block)
@@ -54,12 +47,11 @@ def surface_pieces(plates: Plates, size: tuple[int, ...]) -> tuple[Any, ...]:
     its normal, the first place to look for fluid, and its term."""
     axis, where = AXES.index(plates.axis), corners_of(size)
     pieces = np.full(len(where), -1, np.int32)
-    outward: list[Any] = []
-    probes: list[Any] = []
-    terms: list[Any] = []
+    outward, probes = [np.zeros((0, len(size)))], [np.zeros((0, len(size)))]
+    terms = [np.zeros(0, np.int64)]
     for term, at, up in ends(plates, size) if plates.virtual == "extrapolate" else []:
         here = np.flatnonzero(where[:, axis] == min(at, size[axis] - 1))
-        pieces[here] = len(terms) * len(here) + np.arange(len(here))
+        pieces[here] = sum(map(len, terms)) + np.arange(len(here))
         normal = np.zeros((len(here), len(size)))
         normal[:, axis] = up
         place = where[here] + 0.5
@@ -67,12 +59,8 @@ def surface_pieces(plates: Plates, size: tuple[int, ...]) -> tuple[Any, ...]:
         outward.append(normal)
         probes.append(place)
         terms.append(np.full(len(here), term, np.int64))
-    if not terms:
-        return pieces, np.zeros((0, len(size))), np.zeros((0, len(size))), np.zeros(0, np.int64)
     return pieces, np.concatenate(outward), np.concatenate(probes), np.concatenate(terms)
 
 
 def _number(where: Any, cells: tuple[int, ...]) -> Any:
-    """Numbers of cells from their places."""
-    strides = np.cumprod([1, *cells[:-1]])
-    return where @ strides
+    return where @ np.cumprod([1, *cells[:-1]])

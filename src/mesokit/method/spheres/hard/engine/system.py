@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.kernels.group import Packing
+from mesokit.kernels.packing import Packing
 from mesokit.method.spheres.common.wall.rows import FREQUENCY, PHASE
 from mesokit.method.spheres.hard.engine import groups
 from mesokit.method.spheres.hard.engine.collide import Rules

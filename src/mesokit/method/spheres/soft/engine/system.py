@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.solids.bodies import NO_TERM
-from mesokit.geometry.solids.none import Nothing
-from mesokit.kernels.group import Packing
+from mesokit.kernels.packing import Packing
 from mesokit.loops.threads import Threads
 from mesokit.method.spheres.common.wall.rows import AMPLITUDE, AXIS, KIND, PLACE, PLANE
 from mesokit.method.spheres.soft.engine import groups

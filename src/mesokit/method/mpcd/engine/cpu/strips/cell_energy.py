@@ -22,7 +22,7 @@ MOST_DENSITY = 1000.0  # beyond which too few bits are left for the energy
 SPARE = 2.0**16  # how much larger than thermal the energy of a cell of the mean density may get
 
 
-class NotAsked(NamedTuple):
+class NotNeeded(NamedTuple):
     """No rule or thermostat needs the energy."""
 
 
@@ -57,7 +57,7 @@ def untangled(energy, total):
 
 
 @generic
-def asks(energy):
+def needs_energy(energy):
     """Whether a rule or thermostat needs the energy (a literal)."""
 
 
@@ -71,7 +71,7 @@ def many_tally(energy, number, m_v_squared):
     """The term of so many particles in the integer that counts."""
 
 
-@energy_term.register(NotAsked, WithCount)
+@energy_term.register(NotNeeded, WithCount)
 def _(energy, m, v):
     return ()
 
@@ -81,7 +81,7 @@ def _(energy, m, v):
     return (m * dot(v, v),)
 
 
-@tally.register(NotAsked, Column)
+@tally.register(NotNeeded, Column)
 def _(energy, m, v):
     return ()
 
@@ -91,7 +91,7 @@ def _(energy, m, v):
     return (fixed(dot(v, v), m * energy.scale) + np.int64(ONE_PARTICLE - ROUNDER_BITS),)
 
 
-@untangled.register(NotAsked, Column)
+@untangled.register(NotNeeded, Column)
 def _(energy, total):
     return total, 0.0
 
@@ -102,17 +102,17 @@ def _(energy, total):
     return number, float(total & np.int64(ENERGY_MASK)) * (1.0 / energy.scale)
 
 
-@asks.register(NotAsked)
+@needs_energy.register(NotNeeded)
 def _(energy):
     return False
 
 
-@asks.register(Column, WithCount)
+@needs_energy.register(Column, WithCount)
 def _(energy):
     return True
 
 
-@many_energy_term.register(NotAsked, WithCount)
+@many_energy_term.register(NotNeeded, WithCount)
 def _(energy, m_v_squared):
     return ()
 
@@ -122,7 +122,7 @@ def _(energy, m_v_squared):
     return (m_v_squared,)
 
 
-@many_tally.register(NotAsked, Column)
+@many_tally.register(NotNeeded, Column)
 def _(energy, number, m_v_squared):
     return np.int64(number)
 

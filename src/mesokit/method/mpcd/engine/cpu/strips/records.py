@@ -1,4 +1,4 @@
-"""Cells keep records (all numbers of a cell side by side), strips keep rows: the way between them.
+"""Moves numbers between records (all numbers of a cell side by side) and rows of strips.
 
 Four lanes at a time are turned round in vector registers. Written as a loop over single numbers,
 each number would be one store to a cache line of its own, and stores are what limits such a loop.
@@ -25,9 +25,8 @@ def gather(typing_context: Any, records: Any, cell: Any, i: Any, rows: Any, patt
     count = len(pattern)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        source = _start(context, builder, signature, arguments, 0)
-        cells = _start(context, builder, signature, arguments, 1)
-        target = _start(context, builder, signature, arguments, 3)
+        given = context, builder, signature, arguments
+        source, cells, target = (_start(*given, k) for k in (0, 1, 3))
         lane = arguments[2]
         length = record_length(count)
         starts = _starts(builder, cells, lane, length)
@@ -47,8 +46,7 @@ def spread(typing_context: Any, records: Any, start: Any, i: Any, rows: Any, pat
     count = len(pattern)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        target = _start(context, builder, signature, arguments, 0)
-        source = _start(context, builder, signature, arguments, 3)
+        target, source = (_start(context, builder, signature, arguments, k) for k in (0, 3))
         first = builder.mul(arguments[1], ir.Constant(_I64, record_length(count)))
         for k in range(0, count, 2):
             rows = [
@@ -75,9 +73,8 @@ def scatter_add(
     count = len(terms)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        target = _start(context, builder, signature, arguments, 0)
-        cells = _start(context, builder, signature, arguments, 1)
-        source = _start(context, builder, signature, arguments, 3)
+        given = context, builder, signature, arguments
+        target, cells, source = (_start(*given, k) for k in (0, 1, 3))
         lane = arguments[2]
         length = sums_length(count)
         starts = _starts(builder, cells, lane, length)
@@ -107,8 +104,7 @@ def gather_sums(typing_context: Any, sums: Any, start: Any, i: Any, rows: Any, t
     count = len(terms)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        source = _start(context, builder, signature, arguments, 0)
-        target = _start(context, builder, signature, arguments, 3)
+        source, target = (_start(context, builder, signature, arguments, k) for k in (0, 3))
         length = sums_length(count)
         first = builder.mul(arguments[1], ir.Constant(_I64, length))
         for k in range(0, length, QUAD):
@@ -126,7 +122,6 @@ def gather_sums(typing_context: Any, sums: Any, start: Any, i: Any, rows: Any, t
 
 
 def _start(context: Any, builder: Any, signature: Any, arguments: Any, k: int) -> Any:
-    """Pointer to the first element of the array that is argument k."""
     array = context.make_array(signature.args[k])(context, builder, arguments[k])
     return array.data
 

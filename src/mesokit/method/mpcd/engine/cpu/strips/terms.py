@@ -55,7 +55,7 @@ def _mass_term(masses, m):
 
 @by_type
 def read_sums(physics, found):
-    """What a cell has found: its number, mass, momentum, sum of m v^2 (0 if not asked), and the
+    """Sums of a cell as floats: its number, mass, momentum, sum of m v^2 (0 if not asked), and the
     rule's own sums."""
     d, uniform = len(field_of(physics, "zero")), len(field_of(physics, "masses")) == 1
     asked = field_of(physics, "energy").instance_class is Column
@@ -74,5 +74,4 @@ def read_sums(physics, found):
 
 @elementwise
 def _floats(n, found, scales):
-    """The sums of n particles as floats."""
     return "from_fixed(found[{k} + 1], n, scales[{k}])"

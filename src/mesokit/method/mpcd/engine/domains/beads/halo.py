@@ -13,12 +13,7 @@ from mesokit.case.box import fold
 from mesokit.kernels.part import stage
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.neighbours import MADE
-from mesokit.method.mpcd.engine.beads.state import (
-    AROUND,
-    OWN,
-    load_place,
-    load_velocity,
-)
+from mesokit.method.mpcd.engine.beads.state import AROUND, OWN, has_halo, load_place, load_velocity
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.method.mpcd.engine.cpu.strips.rows import store_values
 from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of
@@ -28,8 +23,10 @@ from mesokit.method.mpcd.engine.domains.messages.shared import (
     FAULTS,
     MESSAGES,
     STRETCHED,
+    address_of,
 )
-from mesokit.scalar.jit import by_type, scalar
+from mesokit.method.mpcd.engine.where import where
+from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import scaled
 
 NUMBERS, PLACES = 5, 6  # tags of messages
@@ -75,18 +72,10 @@ class Halo(NamedTuple):
     wraps: tuple  # 1.0 for each axis along which the box repeats
 
 
-@by_type
+@where(beads=has_halo)
+@stage
 def assign_beads(worker, now, physics, box, fluid, beads):
     """At the start of a step: migrate beads to their owners, and exchange copies near blocks."""
-    if len(beads.types[beads.fields.index("halo")]) == 0:
-        return lambda worker, now, physics, box, fluid, beads: None
-    return lambda worker, now, physics, box, fluid, beads: _assign_beads(
-        worker, now, physics, box, fluid, beads
-    )
-
-
-@stage
-def _assign_beads(worker, now, physics, box, fluid, beads):
     barrier(worker)
     if worker.thread == 0:
         changed = migrate_beads(now, physics, box, fluid.cells.shared, beads)
@@ -97,13 +86,9 @@ def _assign_beads(worker, now, physics, box, fluid, beads):
     barrier(worker)
 
 
-@by_type
+@where(neighbours=len)
 def forget_lists(neighbours):
     """Mark neighbour lists as outdated: other beads are around the block now."""
-    return _forget if len(neighbours) else lambda neighbours: None
-
-
-def _forget(neighbours):
     (lists,) = neighbours
     for t in range(len(lists.noted)):
         lists.noted[t, MADE] = 0.0
@@ -121,15 +106,16 @@ def migrate_beads(now, physics, box, shared, beads):
     # ranks find the same owner. Beads that stay move up in the list, so ids remain in order.
     for n in range(number):
         i = halo.numbers[OWN, n]
-        r, _, _ = fold(
-            box, load_place(beads, i, zero), load_velocity(beads, i, zero), zero_of(zero)
-        )
-        owner = owner_or_own(shared, cell_in_box(r, grid))
+        mine, v = load_place(beads, i, zero), load_velocity(beads, i, zero)
+        r, _, _ = fold(box, mine, v, scaled(0.0, zero))
+        place = cell_in_box(r, grid)
+        owner, _ = owner_of(shared, place)
+        owner = NO_OWNER if in_block(shared.limits, place) else owner  # no partner, or this rank
         if owner == NO_OWNER:
             halo.numbers[OWN, kept] = i
             kept += 1
         else:
-            append(halo.out, owner, i, load_place(beads, i, zero), load_velocity(beads, i, zero))
+            append(halo.out, owner, i, mine, v)
     gone = number - kept
     exchange_bead_rows(halo, shared, NUMBERS)
     # Beads that arrive are inserted by id. The order of own beads is then the same whichever
@@ -137,7 +123,8 @@ def migrate_beads(now, physics, box, shared, beads):
     for p in range(len(halo.ranks)):
         for row in range(1, 1 + int(halo.into[p, 0, 0])):
             i = read_place(halo.into, p, row, beads, zero)
-            read_velocity(halo.into, p, row, beads, i, zero)
+            for k in range(len(zero)):
+                beads.v[i * len(zero) + k] = halo.into[p, row, 1 + len(zero) + k]
             kept = insert(halo.numbers, OWN, kept, i)
             gone += 1
     halo.count[OWN] = kept
@@ -146,19 +133,6 @@ def migrate_beads(now, physics, box, shared, beads):
         i = halo.numbers[OWN, n]
         store_values(halo.began, np.uint64(i * len(zero)), load_place(beads, i, zero))
     return gone != 0
-
-
-@scalar
-def zero_of(pattern):
-    """A vector of zeros."""
-    return scaled(0.0, pattern)
-
-
-@scalar
-def owner_or_own(shared, place):
-    """The partner that owns a cell; NO_OWNER if this rank owns it, or no partner does."""
-    owner, _ = owner_of(shared, place)
-    return NO_OWNER if in_block(shared.limits, place) else owner
 
 
 @scalar
@@ -192,26 +166,15 @@ def read_place(rows, p, row, beads, zero):
 
 
 @scalar
-def read_velocity(rows, p, row, beads, i, zero):
-    """Set the velocity of bead i from a row of a message."""
-    d = len(zero)
-    for k in range(d):
-        beads.v[i * d + k] = rows[p, row, 1 + d + k]
-
-
-@scalar
 def exchange_bead_rows(halo, shared, tag):
     """Send whole rows to all partners, and receive theirs."""
     post, n, words = halo.post, 0, halo.out.shape[2]
     most = halo.out.shape[1] * words
-    size = np.uint64(8 * most)
     for p in range(len(halo.ranks)):
-        at = np.uint64(halo.into.ctypes.data) + np.uint64(p) * size
-        n = receive(post, n, at, most, halo.ranks[p], tag)
+        n = receive(post, n, address_of(halo.into, p), most, halo.ranks[p], tag)
     for p in range(len(halo.ranks)):
-        at = np.uint64(halo.out.ctypes.data) + np.uint64(p) * size
         sent = (1 + int(halo.out[p, 0, 0])) * words
-        n = send(post, n, at, sent, halo.ranks[p], tag)
+        n = send(post, n, address_of(halo.out, p), sent, halo.ranks[p], tag)
         shared.meter[MESSAGES] += 1
         shared.meter[BEAD_WORDS] += sent
     finish(post, n)
@@ -230,7 +193,7 @@ def exchange_copies(now, physics, box, shared, beads):
         i = halo.numbers[OWN, n]
         halo.numbers[AROUND, n] = i
         mine, v = load_place(beads, i, zero), load_velocity(beads, i, zero)
-        r, _, _ = fold(box, mine, v, zero_of(zero))
+        r, _, _ = fold(box, mine, v, scaled(0.0, zero))
         for p in range(len(halo.ranks)):
             if near_block(halo, shared, p, r):
                 append(halo.out, p, i, mine, v)
@@ -292,35 +255,28 @@ def check_copies(now, shared, beads):
                     shared.noted[FAULTS] |= STRETCHED
 
 
-@by_type
+@where(beads=has_halo)
+@stage
 def update_copies(worker, beads):
     """Send places of own beads to the ranks that keep copies, and receive those of copies."""
-    if len(beads.types[beads.fields.index("halo")]) == 0:
-        return lambda worker, beads: None
-    return lambda worker, beads: _update_copies(worker, beads)
-
-
-@stage
-def _update_copies(worker, beads):
     if worker.thread == 0:
         halo = beads.halo
         post, n, d = halo.post, 0, len(beads.r) // len(beads.cell)
-        size = np.uint64(8 * halo.out.shape[1] * halo.out.shape[2])
         # The lists of copies are fixed for the step, so messages have places only, without ids.
         # Receives are posted before sends. The floats are sent unchanged: forces on own beads
         # have the same bits as on one rank.
         for p in range(len(halo.ranks)):
             if halo.copies_in[p] > 0:
-                at = np.uint64(halo.into.ctypes.data) + np.uint64(p) * size
-                n = receive(post, n, at, halo.copies_in[p] * d, halo.ranks[p], PLACES)
+                words = halo.copies_in[p] * d
+                n = receive(post, n, address_of(halo.into, p), words, halo.ranks[p], PLACES)
         for p in range(len(halo.ranks)):
             if halo.copies_out[p] > 0:
                 rows = halo.out[p].reshape(-1)
                 for j in range(halo.copies_out[p]):
                     for k in range(d):
                         rows[j * d + k] = beads.r[halo.ids_out[p, j] * d + k]
-                at = np.uint64(halo.out.ctypes.data) + np.uint64(p) * size
-                n = send(post, n, at, halo.copies_out[p] * d, halo.ranks[p], PLACES)
+                words = halo.copies_out[p] * d
+                n = send(post, n, address_of(halo.out, p), words, halo.ranks[p], PLACES)
         finish(post, n)
         for p in range(len(halo.ranks)):
             rows = halo.into[p].reshape(-1)

@@ -4,11 +4,9 @@ Their terms are sent to the owner of the cell, which adds them to its sums and r
 coefficients of the collision.
 """
 
-from typing import Any
-
 import numpy as np
 
-from mesokit.method.mpcd.engine.beads.state import OWN, PRESENT, load_folded, load_place
+from mesokit.method.mpcd.engine.beads.state import OWN, PRESENT, has_halo, load_folded, load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
 from mesokit.method.mpcd.engine.domains.beads.halo import insert
@@ -20,27 +18,17 @@ from mesokit.method.mpcd.engine.domains.messages.shared import (
     FAULTS,
     MESSAGES,
     STRETCHED,
+    address_of,
 )
-from mesokit.scalar.jit import by_type
+from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.vector import added_scaled, dot
 
 TERMS = 7  # tag of messages
 
 
-@by_type
+@where(beads=has_halo)
 def find_bead_owners(worker, now, physics, fluid, beads):
     """Find the cells of own beads: those in own cells, and remote beads of each partner."""
-    if not has_halo(beads):
-        return lambda worker, now, physics, fluid, beads: None
-    return _find_owners
-
-
-def has_halo(beads: Any) -> bool:
-    """Whether beads are shared, from the numba type of `Beads` or of ()."""
-    return len(beads) > 0 and len(beads.types[beads.fields.index("halo")]) > 0
-
-
-def _find_owners(worker, now, physics, fluid, beads):
     if worker.thread == 0:
         halo, shared, present, zero = beads.halo, fluid.cells.shared, 0, physics.zero
         for p in range(len(halo.ranks)):
@@ -50,11 +38,8 @@ def _find_owners(worker, now, physics, fluid, beads):
         # does all of it: beads are few.
         for n in range(halo.count[OWN]):
             i = halo.numbers[OWN, n]
-            moved = added_scaled(
-                load_place(beads, i, zero),
-                -1.0,
-                load_values(halo.began, np.uint64(i * len(zero)), zero),
-            )
+            began = load_values(halo.began, np.uint64(i * len(zero)), zero)
+            moved = added_scaled(load_place(beads, i, zero), -1.0, began)
             if dot(moved, moved) > halo.most:
                 shared.noted[FAULTS] |= STRETCHED
             r, _, _ = load_folded(beads, i, now.box, now.grid.shift)
@@ -74,39 +59,26 @@ def _find_owners(worker, now, physics, fluid, beads):
         halo.count[PRESENT] = present
 
 
-@by_type
+@where("0", beads=has_halo)
 def remote_beads(worker, beads, p):
     """Number of remote beads in cells of a partner; only the first thread writes their rows."""
-    if not has_halo(beads):
-        return lambda worker, beads, p: 0
-    return lambda worker, beads, p: beads.halo.remote[p] if worker.thread == 0 else 0
+    return beads.halo.remote[p] if worker.thread == 0 else 0
 
 
-@by_type
+@where("(np.int64(0), np.int64(0))", beads=has_halo)
 def bead_row(beads, p, j):
     """The record and the cell there of the jth remote bead of a partner."""
-    if not has_halo(beads):
-        return lambda beads, p, j: (np.int64(0), np.int64(0))
-    return lambda beads, p, j: (
-        np.int64(beads.cell[beads.halo.remote_ids[p, j]]),
-        beads.halo.remote_cells[p, j],
-    )
+    return np.int64(beads.cell[beads.halo.remote_ids[p, j]]), beads.halo.remote_cells[p, j]
 
 
-@by_type
+@where("n", beads=has_halo)
 def send_terms(beads, shared, n):
     """Begin to exchange the terms of remote beads; returns the number of open messages."""
-    return _send_terms if has_halo(beads) else lambda beads, shared, n: n
-
-
-def _send_terms(beads, shared, n):
     halo = beads.halo
     terms, words = len(beads.terms), halo.terms_out.shape[2]
     most = halo.terms_out.shape[1] * words
-    size = np.uint64(8 * most)
     for p in range(len(halo.ranks)):
-        at = np.uint64(halo.terms_in.ctypes.data) + np.uint64(p) * size
-        n = receive(shared.post, n, at, most, halo.ranks[p], TERMS)
+        n = receive(shared.post, n, address_of(halo.terms_in, p), most, halo.ranks[p], TERMS)
     # Floats as they are, with the id and the number of the cell at its owner. The owner adds them
     # by id, so the sums of a cell have the same bits as on one rank.
     for p in range(len(halo.ranks)):
@@ -117,21 +89,16 @@ def _send_terms(beads, shared, n):
             halo.terms_out[p, 1 + j, 1] = float(halo.remote_cells[p, j])
             for k in range(terms):
                 halo.terms_out[p, 1 + j, 2 + k] = beads.given[i * terms + k]
-        at = np.uint64(halo.terms_out.ctypes.data) + np.uint64(p) * size
         sent = (1 + halo.remote[p]) * words
-        n = send(shared.post, n, at, sent, halo.ranks[p], TERMS)
+        n = send(shared.post, n, address_of(halo.terms_out, p), sent, halo.ranks[p], TERMS)
         shared.meter[MESSAGES] += 1
         shared.meter[BEAD_WORDS] += sent
     return n
 
 
-@by_type
+@where(beads=has_halo)
 def take_terms(beads):
     """Store the terms of remote beads of partners, which lie in own cells."""
-    return _take_terms if has_halo(beads) else lambda beads: None
-
-
-def _take_terms(beads):
     halo, terms = beads.halo, len(beads.terms)
     present = halo.count[PRESENT]
     # Inserted by id: a cell adds up its beads in one order, from whichever rank they come.
@@ -145,13 +112,9 @@ def _take_terms(beads):
     halo.count[PRESENT] = present
 
 
-@by_type
+@where("answer", beads=has_halo)
 def joint_answer(beads, cell, answer):
     """The coefficients of a cell: of its fluid, or of fluid and beads together."""
-    return _joint if has_halo(beads) else lambda beads, cell, answer: answer
-
-
-def _joint(beads, cell, answer):
     leader = beads.head[cell]
     if leader >= 0:
         return load_values(beads.answers, np.uint64(leader * len(answer)), answer)

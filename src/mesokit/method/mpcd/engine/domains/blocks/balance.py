@@ -7,42 +7,33 @@ Source: the tree of cuts of Shojaaee, Shaebani, Brendel, Torok and Wolf, J.
 Comput. Phys. 231, 612 (2012): sigma_T = sqrt(<T^2> - <T>^2) / <T> of the branches of a node.
 """
 
+import contextlib
+import time
 import weakref
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.loops.clock import BEADS, CELLS, FIRST
 from mesokit.method.mpcd.engine.domains.blocks.tree import Block, Node, Tree
+from mesokit.scalar.system import TICK
 
 HIGHER = 0.5  # of the limit, more for each level above the lowest branches
 PATIENCE = 1  # windows after a move that are not looked at
 LEAST = 0.02  # seconds of work: a shorter window is too noisy
 
 
-class Move(NamedTuple):
-    """Borders that moved: after which step, the imbalance that was seen, and the blocks then."""
-
-    step: int
-    imbalance: float
-    blocks: tuple[Block, ...]
-
-
 class Balance:
-    """Times of the work of all ranks, and the moves of borders.
+    """Times of the work of all ranks, and the number of moves of borders.
 
-    Parameters
-    ----------
-    comm : communicator of mpi4py
-        Of all ranks.
-    limit : float
-        Difference of the branches of a node that is too much.
+    `limit` is the relative difference of the branches of a node above which borders move.
     """
 
     def __init__(self, comm: Any, limit: float) -> None:
         self.comm, self.limit = comm, limit
-        self.moves: list[Move] = []
+        self.moves = 0
         self.first = self.last = np.nan  # imbalance of the first and the last window
         self._times, self._earlier = np.zeros(comm.size), np.zeros(0)
         self._pending: list[Any] = []
@@ -73,9 +64,9 @@ class Balance:
         self._earlier = times
         return [earlier, times] if len(earlier) else []
 
-    def moved(self, step: int, blocks: tuple[Block, ...]) -> None:
+    def moved(self) -> None:
         """Note that borders have moved: times of the present window are of the old borders."""
-        self.moves.append(Move(step, float(self.last), blocks))
+        self.moves += 1
         finish_agreement(self._pending)
         self._wait, self._earlier = PATIENCE, np.zeros(0)
 
@@ -156,3 +147,41 @@ class Load:
             start = low[axis] - block.low[axis]
             out[start : start + high[axis] - low[axis]] = self.cells[inside].sum(axis=others)
         return out
+
+
+class Window:
+    """Seconds of the first thread: `work` in all, of which for `cells`, `beads` and `particles`.
+
+    Work is time of the thread on a core without waiting for messages, so other programs on the
+    machine do not count.
+    """
+
+    def __init__(self) -> None:
+        self.work = self.cells = self.beads = 0.0
+
+    @property
+    def particles(self) -> float:
+        """Seconds of work that is neither for cells nor for beads."""
+        return max(self.work - self.cells - self.beads, 0.0)
+
+    @contextlib.contextmanager
+    def timing(self, engine: Any) -> Iterator[None]:
+        """Count the work that is done in this context."""
+        clock, waits = engine.threads.clock, waiting(engine.memory)
+        stages, waited = clock[FIRST:].copy(), [int(post[2]) for post in waits]
+        began = time.thread_time()
+        yield
+        idle = [TICK * (int(post[2]) - before) for post, before in zip(waits, waited, strict=True)]
+        spent = time.thread_time() - began
+        gone = TICK * (clock[FIRST:] - stages)
+        work, beads = max(spent - sum(idle), 0.0), max(float(gone[BEADS]) - sum(idle[1:]), 0.0)
+        busy = max(float(gone.sum()) - sum(idle), 1e-12)  # by the clock on the wall
+        self.work += work
+        self.cells += work * min(float(gone[CELLS]) / busy, 1.0)
+        self.beads += work * min(beads / busy, 1.0)
+
+
+def waiting(memory: Any) -> list[Any]:
+    """The counters of ticks of waiting: for cells, and for beads."""
+    found = [memory.fluid.cells.shared.post.waited]
+    return found + ([memory.solutes.halo.post.waited] if memory.solutes else [])

@@ -23,48 +23,20 @@ from mesokit.method.mpcd.engine.domains.beads.terms import (
 )
 from mesokit.method.mpcd.engine.domains.messages.flow import take_seen, write_seen
 from mesokit.method.mpcd.engine.domains.messages.ghosts import find_owners
-from mesokit.method.mpcd.engine.domains.messages.mpi import finish, receive, send
+from mesokit.method.mpcd.engine.domains.messages.mpi import finish
 from mesokit.method.mpcd.engine.domains.messages.shared import (
     FAULTS,
     FULL,
     GHOSTS,
     HEADER,
-    MESSAGES,
     RECORD_WORDS,
     SUM_WORDS,
+    receive_rows,
+    send_rows,
     shares,
 )
-from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
-
-
-@scalar
-def receive_rows(shared, n, rows, starts, tag):
-    """Begin to receive rows of all partners, each into its part; returns the number of messages."""
-    words = rows.shape[1]
-    for p in range(len(shared.ranks)):
-        most = (starts[p + 1] - starts[p]) * words
-        n = receive(shared.post, n, address_of(rows, starts[p]), most, shared.ranks[p], tag)
-    return n
-
-
-@scalar
-def send_rows(shared, n, rows, first, number, p, tag, kind):
-    """Begin to send `number` rows, the header first, to a partner; returns the number of messages.
-
-    `kind` is the place in `Shared.meter` that counts the words.
-    """
-    words = number * rows.shape[1]
-    n = send(shared.post, n, address_of(rows, first), words, shared.ranks[p], tag)
-    shared.meter[MESSAGES] += 1
-    shared.meter[kind] += words
-    return n
-
-
-@scalar
-def address_of(rows, first):
-    """Address of a row of 64-bit numbers."""
-    return np.uint64(rows.ctypes.data) + np.uint64(8 * first * rows.shape[1])
-
+from mesokit.method.mpcd.engine.where import where
+from mesokit.scalar.jit import elementwise, for_each, scalar
 
 SUMS, COEFFICIENTS = 1, 2  # tags of messages
 
@@ -81,18 +53,10 @@ def write_row(rows, row, values):
     return "rows[row, {k}] = values[{k}]"
 
 
-@by_type
+@where(fluid=shares)
+@stage
 def exchange_sums(worker, now, physics, fluid, beads):
     """Send the sums of cells of partners to their owners, and add those received to own cells."""
-    if not shares(fluid):
-        return lambda worker, now, physics, fluid, beads: None
-    return lambda worker, now, physics, fluid, beads: _exchange_sums(
-        worker, now, physics, fluid, beads
-    )
-
-
-@stage
-def _exchange_sums(worker, now, physics, fluid, beads):
     shared = fluid.cells.shared
     partners = len(shared.ranks)
     find_owners(worker, now, physics, fluid)
@@ -145,19 +109,12 @@ def part_of_list(worker, starts, p):
 
 
 @scalar
-def first_row(worker, shared, p):
-    """The first row of a thread in the message to a partner."""
-    row = shared.out_at[p] + HEADER + 1
-    for t in range(worker.thread):
-        row += shared.counting[t, p]
-    return row
-
-
-@scalar
 def write_rows(worker, fluid, beads, p, physics):
     """Write the rows of this thread for a partner; clears the sums of these cells."""
     cells, shared, t = fluid.cells, fluid.cells.shared, worker.thread
-    row = first_row(worker, shared, p)
+    row = shared.out_at[p] + HEADER + 1  # and the rows of the threads before this one
+    for before in range(t):
+        row += shared.counting[before, p]
     if row + shared.counting[t, p] > shared.out_at[p + 1]:
         shared.noted[FAULTS] |= FULL
         shared.counting[t, p] = 0
@@ -234,18 +191,10 @@ def add_rows(worker, cells, p, physics):
             sums[start + np.uint64(k)] += shared.sums_in[row, 1 + k]
 
 
-@by_type
+@where(fluid=shares)
+@stage
 def send_coefficients(worker, now, physics, fluid, beads, walls):
     """Send coefficients of the rows received; messages travel while own cells collide."""
-    if not shares(fluid):
-        return lambda worker, now, physics, fluid, beads, walls: None
-    return lambda worker, now, physics, fluid, beads, walls: _send_coefficients(
-        worker, now, physics, fluid, beads, walls
-    )
-
-
-@stage
-def _send_coefficients(worker, now, physics, fluid, beads, walls):
     shared = fluid.cells.shared
     if len(beads) > 0:
         barrier(worker)  # coefficients of cells with beads are complete
@@ -299,18 +248,10 @@ def begin_coefficients(now, physics, shared, walls):
         )
 
 
-@by_type
+@where(fluid=shares)
+@stage
 def receive_coefficients(worker, now, physics, fluid, walls):
     """Receive the coefficients of halo cells, ghosts and remote beads."""
-    if not shares(fluid):
-        return lambda worker, now, physics, fluid, walls: None
-    return lambda worker, now, physics, fluid, walls: _receive_coefficients(
-        worker, now, physics, fluid, walls
-    )
-
-
-@stage
-def _receive_coefficients(worker, now, physics, fluid, walls):
     shared = fluid.cells.shared
     partners = len(shared.ranks)
     barrier(worker)

@@ -6,10 +6,11 @@ all ranks with that piece of surface, and all update their running means in the 
 
 import numpy as np
 
-from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.domains.messages.shared import FAULTS, FULL, HEADER
 from mesokit.method.mpcd.engine.virtual.gradient import PROBES, average_probe, straighten
-from mesokit.scalar.jit import by_type, elementwise, for_each
+from mesokit.method.mpcd.engine.virtual.particles import has_gradient
+from mesokit.method.mpcd.engine.where import where
+from mesokit.scalar.jit import elementwise
 
 
 @elementwise
@@ -18,21 +19,9 @@ def seen_at(values, e, p, pattern):
     return "values[e, p, {k}]"
 
 
-@for_each
-def put_seen(values, e, p, given):
-    """Store the values of a probe."""
-    return "values[e, p, {k}] = given[{k}]"
-
-
-@by_type
+@where("0", walls=has_gradient)
 def write_seen(walls, now, physics, shared, partner, row):
     """Write rows of this step's probes at pieces that a partner keeps; returns their number."""
-    if len(field_of(walls, "gradient")) == 0:
-        return lambda walls, now, physics, shared, partner, row: 0
-    return _write
-
-
-def _write(walls, now, physics, shared, partner, row):
     seen, rows, first = walls.virtual.seen, shared.coefficients_out, row
     pattern = physics.zero + (0.0,)
     # Rows are in the order of pieces and probes, behind the coefficients. Only probes of this step
@@ -52,22 +41,15 @@ def _write(walls, now, physics, shared, partner, row):
     return row - first
 
 
-@by_type
+@where(walls=has_gradient)
 def take_seen(walls, now, physics, shared):
     """Update the running means by the probes of this step, own and received."""
-    if len(field_of(walls, "gradient")) == 0:
-        return lambda walls, now, physics, shared: None
-    return _take
-
-
-def _take(walls, now, physics, shared):
     seen, virtual, rows = walls.virtual.seen, walls.virtual, shared.coefficients_in
     d = len(physics.zero)
     # Each probe has one owner, so rows of several partners never meet in one place.
     for partner in range(len(shared.ranks)):
         first = shared.out_at[partner]
-        asked = shared.sent[partner]
-        begin = first + HEADER + 1 + asked
+        begin = first + HEADER + 1 + shared.sent[partner]
         for row in range(begin, begin + int(rows[first + HEADER, 0])):
             e, p = int(rows[row, 0]), int(rows[row, 1])
             seen.step[e, p] = np.int64(now.counter.step)

@@ -11,20 +11,15 @@ from mesokit.loops.layout import LANES, SCRATCH_ROW, strip_at
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, load_scratch
 from mesokit.method.mpcd.engine.domains.messages.shared import FAR, FAULTS, FULL, shares
-from mesokit.scalar.jit import by_type, optional, scalar, seldom
+from mesokit.method.mpcd.engine.where import where
+from mesokit.scalar.jit import optional, scalar, seldom
 
 NO_OWNER = -1
 
 
-@by_type
+@where(fluid=shares)
 def note_ghosts(worker, s, fluid, cell, terms_rows, lanes, terms, tallied):
     """Note the ghosts of strip s, whose terms have just been added to the sums."""
-    if not shares(fluid):
-        return lambda worker, s, fluid, cell, terms_rows, lanes, terms, tallied: None
-    return _note
-
-
-def _note(worker, s, fluid, cell, terms_rows, lanes, terms, tallied):
     cells = fluid.cells
     width = cells.shared.ghost_terms.shape[2]
     # Ghosts have the spare cell behind all held cells, which collects their terms. Its count is 0

@@ -12,19 +12,11 @@ from mesokit.case.box import SLIDING
 from mesokit.kernels.group import writer
 from mesokit.kernels.part import stage
 from mesokit.loops.clock import MOVE, lap
-from mesokit.loops.layout import (
-    LANES,
-    beads_of,
-    lanes_in,
-    place,
-    place_of_bead,
-    record_length,
-)
+from mesokit.loops.layout import LANES, beads_of, lanes_in, place, place_of_bead, record_length
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
-from mesokit.method.mpcd.engine.domains.messages.exchange import receive_rows, send_rows
 from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of
 from mesokit.method.mpcd.engine.domains.messages.mpi import finish
 from mesokit.method.mpcd.engine.domains.messages.shared import (
@@ -34,8 +26,11 @@ from mesokit.method.mpcd.engine.domains.messages.shared import (
     MOLECULES,
     MOVED,
     MOVED_WORDS,
+    receive_rows,
+    send_rows,
     shares,
 )
+from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.fixed_point import bits, from_bits
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import scaled
@@ -43,42 +38,24 @@ from mesokit.scalar.vector import scaled
 PARTICLES = 4  # tag of messages
 
 
-@by_type
-def migrate(worker, now, physics, fluid):
-    """Migrate particles, if it is due; true if there was no migration in this step."""
-    if not shares(fluid):
-        return lambda worker, now, physics, fluid: True
-    return lambda worker, now, physics, fluid: _migrate(worker, now, physics, fluid)
-
-
-@by_type
+@where("True", fluid=shares)
 def room_left(fluid):
     """Whether the arrays have room for all molecules that can arrive at once."""
-    if not shares(fluid):
-        return lambda fluid: True
-    return _room_left
-
-
-def _room_left(fluid):
     shared = fluid.cells.shared
     return fluid.particles.filling.molecules + shared.moved_in.shape[0] <= shared.room
 
 
-@by_type
+@where(fluid=shares)
 def note_done(worker, fluid, steps):
     """Note how many steps were done: fewer than requested if there was no room."""
-    if not shares(fluid):
-        return lambda worker, fluid, steps: None
-    return _note_done
-
-
-def _note_done(worker, fluid, steps):
     if worker.thread == 0:
         fluid.cells.shared.noted[DONE] = steps
 
 
+@where("True", fluid=shares)
 @stage
-def _migrate(worker, now, physics, fluid):
+def migrate(worker, now, physics, fluid):
+    """Migrate particles, if it is due; true if there was no migration in this step."""
     shared = fluid.cells.shared
     if np.int64(now.counter.step) % shared.every != 0:
         return True
@@ -93,7 +70,15 @@ def _migrate(worker, now, physics, fluid):
             for j in range(shared.left[t, 0] - 1, -1, -1):
                 n = pack_molecule(fluid, physics, shared.leaving[t, j], shared.owner[t, j], n)
             shared.left[t, 0] = 0
-        exchange_particles(shared)
+        sent = receive_rows(shared, 0, shared.moved_in, shared.moved_at, PARTICLES)
+        for p in range(len(shared.ranks)):
+            first = shared.moved_at[p]
+            rows = shared.moved_out[first + HEADER, 0]
+            sent = send_rows(
+                shared, sent, shared.moved_out, first, 1 + rows, p, PARTICLES, MOVED_WORDS
+            )
+            shared.meter[MOVED] += rows
+        finish(shared.post, sent)
         shared.noted[ARRIVED] = 0
         # New molecules are appended. Their order in memory depends on the partners, but no bit
         # does: random numbers follow from ids, and sums are integers.
@@ -118,24 +103,15 @@ def owner_grid(box, grid, closed):
     return lambda box, grid, closed: moved_grid(grid, scaled(0.0, grid.shift), closed)
 
 
-@by_type
+@where(fluid=shares)
 def note_migrants(worker, now, physics, fluid, strip, s):
     """Note the first beads in strip s, which is in the cache, that must migrate in this step."""
-    if not shares(fluid):
-        return lambda worker, now, physics, fluid, strip, s: None
-    return _note_migrants
-
-
-def _note_migrants(worker, now, physics, fluid, strip, s):
-    shared, away = fluid.cells.shared, np.int64(0)
+    shared, away, marks = fluid.cells.shared, np.int64(0), fluid.scratch.marks[worker.thread]
     if np.int64(now.counter.step) % shared.every == 0:
-        marks, grid = (
-            fluid.scratch.marks[worker.thread],
-            owner_grid(now.box, now.grid, shared.closed),
-        )
+        grid = owner_grid(now.box, now.grid, shared.closed)
         for i in range(LANES):
             r = load_particle(strip, i, 0, physics.zero)
-            marks[i] = is_away(shared.limits, r, grid)
+            marks[i] = np.int64(not in_block(shared.limits, cell_in_box(r, grid)))
             away |= marks[i]
         if away != 0:
             note_leaving(worker.thread, fluid, strip, s, grid, physics.zero)
@@ -158,12 +134,6 @@ def note_leaving(thread, fluid, strip, s, grid, zero):
                 shared.leaving[thread, found], shared.owner[thread, found] = first + i, owner
                 found += 1
     shared.left[thread, 0] = found
-
-
-@scalar
-def is_away(limits, r, grid):
-    """1 if the cell at r lies outside of the block with these limits."""
-    return np.int64(not in_block(limits, cell_in_box(r, grid)))
 
 
 @scalar
@@ -212,18 +182,6 @@ def forget_part(fluid, i):
 
 
 @scalar
-def exchange_particles(shared):
-    """Send molecules to all partners, and receive theirs."""
-    n = receive_rows(shared, 0, shared.moved_in, shared.moved_at, PARTICLES)
-    for p in range(len(shared.ranks)):
-        first = shared.moved_at[p]
-        rows = shared.moved_out[first + HEADER, 0]
-        n = send_rows(shared, n, shared.moved_out, first, 1 + rows, p, PARTICLES, MOVED_WORDS)
-        shared.meter[MOVED] += rows
-    finish(shared.post, n)
-
-
-@scalar
 def unpack_molecule(fluid, physics, given, n):
     """Append a molecule from a message; the coefficients of its cells get records of their own."""
     shared, particles, at = fluid.cells.shared, fluid.particles, 0
@@ -251,12 +209,10 @@ def unpack_molecule(fluid, physics, given, n):
     return n + 1
 
 
-@by_type
+set_molecules = writer("filling")  # particles, number of molecules
+
+
+@where(fluid=shares)
 def count_molecules(fluid):
     """Update the number of molecules after a migration."""
-    if not shares(fluid):
-        return lambda fluid: None
-    return lambda fluid: hold(fluid.particles, fluid.cells.shared.noted[MOLECULES])
-
-
-hold = writer("filling")  # particles, number of molecules
+    set_molecules(fluid.particles, fluid.cells.shared.noted[MOLECULES])

@@ -2,9 +2,12 @@
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from mesokit.method.mpcd.engine.cpu.physics import field_of
-from mesokit.method.mpcd.engine.domains.messages.mpi import Post
-from mesokit.scalar.jit import by_type
+from mesokit.method.mpcd.engine.domains.messages.mpi import Post, receive, send
+from mesokit.method.mpcd.engine.where import where
+from mesokit.scalar.jit import scalar
 
 # Places in `Shared.noted`: molecules held, steps done by the last call, faults, particles that
 # arrived in the last migration.
@@ -94,17 +97,42 @@ def shares(fluid: Any) -> bool:
     return len(field_of(field_of(fluid, "cells"), "shared")) > 0
 
 
-@by_type
+@scalar
+def address_of(rows, first):
+    """Address of a row of an array of 64-bit numbers, which lies in one piece."""
+    return np.uint64(rows.ctypes.data) + np.uint64(first * rows.strides[0])
+
+
+@scalar
+def receive_rows(shared, n, rows, starts, tag):
+    """Begin to receive rows of all partners, each into its part; returns the number of messages."""
+    words = rows.shape[1]
+    for p in range(len(shared.ranks)):
+        most = (starts[p + 1] - starts[p]) * words
+        n = receive(shared.post, n, address_of(rows, starts[p]), most, shared.ranks[p], tag)
+    return n
+
+
+@scalar
+def send_rows(shared, n, rows, first, number, p, tag, kind):
+    """Begin to send `number` rows, the header first, to a partner; returns the number of messages.
+
+    `kind` is the place in `Shared.meter` that counts the words.
+    """
+    words = number * rows.shape[1]
+    n = send(shared.post, n, address_of(rows, first), words, shared.ranks[p], tag)
+    shared.meter[MESSAGES] += 1
+    shared.meter[kind] += words
+    return n
+
+
+@where("True", shared=len)
 def any_own(shared, batch):
     """Whether a batch of cells has any own cell."""
-    if len(shared) == 0:
-        return lambda shared, batch: True
-    return lambda shared, batch: shared.mixed[batch]
+    return shared.mixed[batch]
 
 
-@by_type
+@where("cell", shared=len)
 def key_of(shared, cell):
     """The number of a held cell in the whole box."""
-    if len(shared) == 0:
-        return lambda shared, cell: cell
-    return lambda shared, cell: shared.keys[cell]
+    return shared.keys[cell]

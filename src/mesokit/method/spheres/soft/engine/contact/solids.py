@@ -1,7 +1,7 @@
 """Forces of walls of any shape on spheres that touch them."""
 
+from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.solids.bodies import NO_TERM
-from mesokit.geometry.solids.none import Nothing
 from mesokit.method.spheres.soft.engine.acting import ahead, beside, measure_beside
 from mesokit.method.spheres.soft.engine.contact.force import at_wall, body, surface
 from mesokit.method.spheres.soft.engine.contact.remembered import kept
