@@ -9,8 +9,8 @@ from mesokit.case.case import Case
 from mesokit.case.trajectory import Group, Kind
 from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.flock.checks import check, room_in_memory
-from mesokit.method.flock.displacement import Displacement
 from mesokit.method.flock.engine.flocks import Flocks
+from mesokit.method.flock.expected import Displacement
 from mesokit.method.flock.observe import FlockObservable
 from mesokit.method.flock.section import KEYS, Sections
 from mesokit.method.flock.start import FirstState, first_state

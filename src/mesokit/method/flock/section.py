@@ -84,7 +84,7 @@ class Flock:
 
 
 class Sections:
-    """What a case of a flock has beside the sections of every case."""
+    """Sections of a case of a flock beside those of every case."""
 
     flock: Flock = param(Flock(), doc="the birds")
     walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")

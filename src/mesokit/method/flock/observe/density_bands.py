@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
-from mesokit.method.flock.observe.protocol import FlockObservable, blind, mean_heading, open_box
+from mesokit.method.flock.expected import at_random
+from mesokit.method.flock.observe.protocol import FlockObservable
 from mesokit.seam.estimate import of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
     from mesokit.method.flock.engine.flocks import Flocks
-    from mesokit.seam.engine import Array
 
 MOST_BINS = 2**16
 WAVES = 8  # the longest, that tell where the crest is
@@ -38,13 +38,13 @@ class DensityBands(FlockObservable):
     """
 
     quantity: Literal["density-bands"] = tag("density-bands")
+    among_walls: ClassVar[bool] = False
     axis: Axis | None = param(None, doc="axis of the profile (nearest to the heading unless said)")
     bins: int = param(64, doc="bins over the length of the box", ge=4, le=MOST_BINS)
 
     def check(self, case: Case) -> None:
         """Raise CaseError among walls, and in boxes of unequal sides without an axis."""
         super().check(case)
-        open_box(case, "quantity = 'density-bands'")
         if self.axis is not None:
             case.box.index(self.axis)
         elif len(set(case.box.size)) > 1:
@@ -68,7 +68,7 @@ class DensityBandsAccumulator(BlockAccumulator):
 
     def observe(self, engine: Flocks) -> None:
         headings = engine.headings()
-        _, mean = mean_heading(headings)
+        mean = headings.mean(axis=0)
         axis = int(np.argmax(np.abs(mean))) if self.axis is None else self.axis
         sign = -1.0 if mean[axis] < 0 else 1.0
         place = sign * engine.positions()[:, axis] / self.length
@@ -121,10 +121,8 @@ class DensityBandsAccumulator(BlockAccumulator):
         means, number = of_mean(self.blocks), self.case.particles
         gradient = np.zeros(2 * self.bins + 1)
         gradient[-1] = number
-        noise = self.case.flock.noise
-        random = blind(noise, self.case.box.dimension) and self.case.flock.cohesion is None
         measured = means.scalar(number * float(means.value[-1]), gradient)
         note = "1 for places at random"
         what = f"structure factor of the {WAVES} longest waves"
         # without order the axis follows chance, which does not know the places
-        return [Comparison(what, *measured, 1.0 if random else math.nan, "", note)]
+        return [Comparison(what, *measured, 1.0 if at_random(self.case) else math.nan, "", note)]

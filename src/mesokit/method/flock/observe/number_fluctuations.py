@@ -9,33 +9,23 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
-from mesokit.method.flock.observe.protocol import (
-    FlockObservable,
-    blind,
-    mean_heading,
-    open_box,
-    within,
-)
+from mesokit.method.flock.expected import giant_exponent, number_exponent
+from mesokit.method.flock.observe.protocol import FlockObservable
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of, pack
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
     from mesokit.method.flock.engine.flocks import Flocks
-    from mesokit.seam.engine import Array
 
 LARGEST = 0.25  # side of the largest squares unless said, in the shortest length of the box
 FITTED = 4  # of the largest, whose exponent is fitted
 FEWEST = 3  # sides for an exponent
-ORDERED = 0.8  # exponent of large ordered flocks in 2D
-IN_ORDER = 0.5  # polar order from which a flock is ordered
-AT_RANDOM = 1.5  # times the order of directions at random, up to which it is disordered
 MOST = 2**24  # squares
 
 
@@ -49,6 +39,7 @@ class NumberFluctuations(FlockObservable):
     """
 
     quantity: Literal["number-fluctuations"] = tag("number-fluctuations")
+    among_walls: ClassVar[bool] = False
     sides: Either[None, float] = param(
         None,
         doc="sides of the squares (1, 2, 4, ... times the reach of sight, up to a quarter of the "
@@ -68,10 +59,13 @@ class NumberFluctuations(FlockObservable):
     def check(self, case: Case) -> None:
         """Raise CaseError among walls, and for sides that are longer than the box."""
         super().check(case)
-        open_box(case, "quantity = 'number-fluctuations'")
         sides = self.all_sides(case)
         if self.sides is not None:
-            within(sides, 1e-6 * min(case.box.size), float(min(case.box.size)), "sides")
+            least, most = 1e-6 * min(case.box.size), float(min(case.box.size))
+            if not least <= sides[0] <= sides[-1] <= most:
+                raise CaseError(f"sides = {list(sides)}: expected from {least:.4g} to {most:.4g}")
+            if len(set(sides)) < len(sides):
+                raise CaseError(f"sides = {list(sides)}: expected each once")
         number = math.prod(int(length / sides[0]) for length in case.box.size)
         if number > MOST:
             raise CaseError(
@@ -98,7 +92,7 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
 
     def observe(self, engine: Flocks) -> None:
         places = engine.positions()
-        self.order.add(mean_heading(engine.headings())[0])
+        self.order.add(float(np.linalg.norm(engine.headings().mean(axis=0))))
         self.blocks.add(
             [
                 ((counts_in_squares(places, side, self.size) - mean) ** 2).mean()
@@ -128,26 +122,11 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
             theory="birds at random",
             comparisons=tuple(found),
             samples=self.blocks.count,
-            extra={"sides": np.array(self.sides), "guide": self.giant},
+            extra={
+                "sides": np.array(self.sides),
+                "guide": giant_exponent(self.case, float(self.order.mean())),
+            },
         )
-
-    @property
-    def random(self) -> bool:
-        """Whether birds fly at random."""
-        flock = self.case.flock
-        return blind(flock.noise, self.case.box.dimension) and flock.cohesion is None
-
-    @property
-    def giant(self) -> float:
-        """The exponent of large ordered flocks in 2D, nan where this is none."""
-        ordered = not self.random and float(self.order.mean()) >= IN_ORDER
-        return ORDERED if ordered and self.case.box.dimension == 2 else math.nan
-
-    @property
-    def disordered(self) -> bool:
-        """Whether the order is about as small as that of directions at random."""
-        chance = theory.disordered_order(self.case.particles, self.case.box.dimension)
-        return float(self.order.mean()) <= AT_RANDOM * chance
 
     def comparisons(self) -> list[Comparison]:
         """The exponent: slope of the logarithms, by least squares."""
@@ -164,17 +143,8 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
         share = np.minimum(self.mean / case.particles, 1.0)
         with np.errstate(divide="ignore"):
             root = 0.5 * float(weight[use] @ np.log(self.mean * (1 - share))[use])
-        order = f"polar order {float(self.order.mean()):.2g}"
-        if self.random:
-            expected, note = root, "birds at random"
-        elif self.disordered:
-            expected, note = root, f"approximate: disordered flocks, {order}"
-        elif math.isfinite(self.giant):
-            expected = self.giant
-            note = f"approximate: large ordered flocks (Toner and Tu 1995), {order}"
-        else:
-            expected, note = math.nan, f"no theory for this flock, {order}"
         measured = variance.scalar(slope, 0.5 * weight / at)
+        expected, note = number_exponent(case, float(self.order.mean()), root)
         return [Comparison("exponent of number fluctuations", *measured, expected, "", note)]
 
 

@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
-from mesokit.method.flock.observe.protocol import (
-    FlockObservable,
-    all_see_all,
-    blind,
-    mean_heading,
-)
+from mesokit.method.flock.expected import polar_order
+from mesokit.method.flock.observe.protocol import FlockObservable
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
     from mesokit.method.flock.engine.flocks import Flocks
-
-MANY = 30  # birds, from which on their sum at random is as good as normal
 
 
 @component
@@ -38,15 +31,6 @@ class PolarOrder(FlockObservable):
     quantity: Literal["polar-order"] = tag("polar-order")
 
 
-class Known(NamedTuple):
-    """Mean, mean square and Binder cumulant by theory, nan where it has none, and what it says."""
-
-    order: float = math.nan
-    square: float = math.nan
-    cumulant: float = math.nan
-    why: str = ""
-
-
 @accumulator_of(PolarOrder)
 class PolarOrderAccumulator(BlockAccumulator):
     """Powers of the order, and a time series of it and of the mean heading."""
@@ -58,7 +42,8 @@ class PolarOrderAccumulator(BlockAccumulator):
         self.blocks, self.series = Blocks(3), TimeSeries(1 + case.box.dimension)
 
     def observe(self, engine: Flocks) -> None:
-        order, mean = mean_heading(engine.headings())
+        mean = engine.headings().mean(axis=0)
+        order = float(np.linalg.norm(mean))
         self.blocks.add([order, order**2, order**4])
         self.series.add(engine.time, [order, *mean])
 
@@ -77,7 +62,7 @@ class PolarOrderAccumulator(BlockAccumulator):
             label="polar order",
             units={"value": "", "time": "tau"},
             expected=None if math.isnan(level) else np.full(len(rows), level),
-            theory="" if math.isnan(level) else self.known().why,
+            theory="" if math.isnan(level) else polar_order(self.case).note,
             comparisons=tuple(found),
             samples=self.blocks.count,
             extra={
@@ -94,22 +79,15 @@ class PolarOrderAccumulator(BlockAccumulator):
         order, square, fourth = map(float, means.value)
         cumulant = 1 - fourth / (3 * square**2) if square > 0 else math.nan
         slope = np.array([0.0, 2 * fourth / (3 * square**3), -1 / (3 * square**2)])
-        known = self.known()
-        only = np.eye(3)
+        known = polar_order(self.case)
+        note = known.note
+        one = np.eye(3)
         return [
+            Comparison("mean polar order", *means.scalar(order, one[0]), known.order, "", note),
             Comparison(
-                "mean polar order", *means.scalar(order, only[0]), known.order, "", known.why
+                "mean square polar order", *means.scalar(square, one[1]), known.square, "", note
             ),
-            Comparison(
-                "mean square polar order",
-                *means.scalar(square, only[1]),
-                known.square,
-                "",
-                known.why,
-            ),
-            Comparison(
-                "Binder cumulant", *means.scalar(cumulant, slope), known.cumulant, "", known.why
-            ),
+            Comparison("Binder cumulant", *means.scalar(cumulant, slope), known.cumulant, "", note),
             Comparison(
                 "susceptibility",
                 *means.scalar(
@@ -118,24 +96,3 @@ class PolarOrderAccumulator(BlockAccumulator):
                 note=f"number of birds times the variance of the order, {number} birds",
             ),
         ]
-
-    def known(self) -> Known:
-        """What theory knows."""
-        case, d = self.case, self.case.box.dimension
-        noise, number = case.flock.noise, case.particles
-        if case.flock.cohesion is not None:
-            return Known(why="no theory with cohesion")
-        if blind(noise, d):
-            square, why = 1 / number, "directions at random"
-            if number < MANY:
-                return Known(square=square, why=why)
-            order, cumulant = theory.disordered_order(number, d), theory.disordered_binder(d)
-            return Known(order, square, cumulant, why)
-        crowd = noise.crowd(d, number) if all_see_all(case) else None
-        if crowd is None:
-            return Known(why="no analytical theory")
-        if math.isnan(crowd.many):
-            return Known(why="all see all: order and disorder are both stable")
-        if math.isnan(crowd.mean_square):
-            return Known(why=f"all see all: {crowd.many:.4g} of many birds, these are too few")
-        return Known(crowd.mean, crowd.mean_square, why="all see all")
