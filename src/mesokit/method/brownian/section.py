@@ -36,6 +36,6 @@ class Brownian:
 
 
 class Sections:
-    """What a case of Brownian motion has beside the sections of every case."""
+    """Sections of a case of Brownian motion beside those of every case."""
 
     brownian: Brownian = param(Brownian(), doc="the particles")

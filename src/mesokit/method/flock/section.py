@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from pydantic import model_validator
@@ -81,6 +82,11 @@ class Flock:
         if self.number is not None:
             return self.number
         return round((DENSITY if self.density is None else self.density) * box.volume)
+
+
+def ball(dimension: int, radius: float) -> float:
+    """Area of a disk or volume of a sphere."""
+    return math.pi * radius**2 if dimension == 2 else 4 / 3 * math.pi * radius**3
 
 
 class Sections:

@@ -13,6 +13,7 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.method.flock.observe.protocol import FlockObservable
+from mesokit.method.flock.section import ball
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
@@ -45,9 +46,8 @@ class ClusterSizes(FlockObservable):
                 f"distance = {show(near)}: expected less than half of the box, "
                 f"{0.5 * min(case.box.size):.4g}"
             )
-        d, volume = case.box.dimension, math.prod(case.box.size)
-        ball = math.pi * near**2 if d == 2 else 4 / 3 * math.pi * near**3
-        pairs = 0.5 * case.particles**2 * ball / volume
+        reached = ball(case.box.dimension, near)
+        pairs = 0.5 * case.particles**2 * reached / math.prod(case.box.size)
         if pairs > MOST_PAIRS:
             raise CaseError(
                 f"distance = {show(near)}: some {pairs:.2g} pairs of birds in each sample; "
