@@ -43,12 +43,13 @@ class Group(Protocol):
 
 
 class Neighbours(Protocol):
-    """What a method says of neighbours.
+    """Theory of neighbours by a method.
 
     It is made of a case and the observable, and raises CaseError where there are none. Pairs are
     those of groups `first` with `second`, or without these those within `first`. `size` is that of
     the largest particles. Of equal hard spheres `diameter` is where they touch, `value` g there,
-    both nan if not known, and `note` what to say of it.
+    both nan if not known, and `note` what to say of it. What is not overridden holds for particles
+    that interact and are all looked at.
     """
 
     first: list[Group]
@@ -60,12 +61,15 @@ class Neighbours(Protocol):
 
     def sampled(self, group: Group) -> bool:
         """True if some molecules of a group are looked at, others at each sample."""
+        return False
 
     def independent(self, groups: list[Group]) -> bool:
         """True if molecules are independent of all others."""
+        return False
 
     def diffusion(self, group: Group) -> float | None:
         """Diffusion coefficient of the molecules of a group, None if not known."""
+        return None
 
 
 @component
