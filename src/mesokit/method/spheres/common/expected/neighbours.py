@@ -10,7 +10,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.groups import ids_of_kind, refuse_molecules
-from mesokit.observe.radial_distribution import Group, Neighbours
+from mesokit.observe.radial_distribution import Neighbours
 
 
 class _Spheres(NamedTuple):
@@ -39,7 +39,5 @@ class NeighboursOfSpheres(Neighbours):
         except CaseError as error:  # which speaks of one kind
             known = str(error).partition(": ")[2]
             raise CaseError(f"kinds = {show(observable.kinds)}: {known}") from None
-        spheres: list[Group] = [
-            _Spheres(int(ids[0]) if len(ids) else 0, len(ids)) for ids in groups
-        ]
-        self.first, self.second = spheres[:1], spheres[1:]
+        first, *others = (_Spheres(int(ids[0]) if len(ids) else 0, len(ids)) for ids in groups)
+        self.first, self.second = [first], [*others]

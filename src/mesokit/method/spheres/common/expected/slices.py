@@ -99,19 +99,16 @@ class DensityInSlices(Slices):
         section, box, slices = self.case.spheres, self.case.box, len(edges) - 1
         if any(not wall.closed_axes for wall in self.case.walls):
             return None
-        if self.axis not in self.closed:
+        if self.axis in self.closed:
+            gas = self.state is not None and self.state.hard and kT > 0
+            if not gas or any(kind.spread for kind, _ in self.kinds):
+                return None
+            shares = np.array([self._between_plates(edges, kT, kind) for kind, _ in self.kinds])
+        else:
             fluid = section.fraction(box) < FREEZES[box.dimension]
             if self.pull[self.axis] or not (self.steady and fluid):
                 return None
             shares = np.full((len(self.kinds), slices), 1 / slices)
-        elif (
-            self.state is None
-            or not (self.state.hard and kT > 0)
-            or any(kind.spread for kind, _ in self.kinds)
-        ):
-            return None
-        else:
-            shares = np.array([self._between_plates(edges, kT, kind) for kind, _ in self.kinds])
         numbers = np.array([number for _, number in self.kinds])
         return np.asarray(numbers @ shares / (box.volume / slices))
 
