@@ -181,7 +181,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         if self.own is not None:
             places = self.places(fluid, self.first, self.beads)[0]
             molecules = places.reshape(*self.beads[0].shape, -1)
-            self.own.add(molecules, self.box, self.edges)
+            self.own.add_places(molecules, self.box, self.edges)
 
     def number(self) -> float:
         """Pairs that there are at any distance, of all molecules and not only the sample."""
@@ -255,7 +255,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         if self.own is None or not self.short_run():
             return error
         scale = self.box.prod() / (self.number() * self.shells)
-        least = self.own.error(combine * scale, self.observable.pairs == "all")
+        least = self.own.error_of_pairs(combine * scale, self.observable.pairs == "all")
         return np.where(np.isnan(error), error, np.fmax(error, least))
 
     def expected(self) -> float | None:
