@@ -85,6 +85,10 @@ class Estimate(NamedTuple):
         total = added.sum(axis=1)
         return np.asarray(added @ self.spans / np.where(total > 0, total, 1.0))
 
+    def total(self, weights: Array) -> tuple[float, float]:
+        """The sum of the values (n,) times weights (n,), and its standard error."""
+        return self.scalar(weights @ self.value, weights)
+
     def scalar(
         self,
         value: float | Array,
