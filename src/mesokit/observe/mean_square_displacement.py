@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
-from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either
 from mesokit.observe.shared.fitted import fitted_number
+from mesokit.observe.shared.of_method import OfMethod
 from mesokit.observe.shared.origins import GROUPS, Origins
 from mesokit.seam.engine import Particles
 from mesokit.seam.estimate import Estimate, fit
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
+from mesokit.seam.result import Array, Comparison, Result, joined
 from mesokit.statistics import spread_ids
 
 Integers = NDArray[np.int64]
@@ -29,7 +29,7 @@ CHANGES = 2.0  # standard errors of a change of the slope that counts where theo
 
 
 class Displacement(Protocol):
-    """What a method says of the displacement of its particles in a case.
+    """Theory of the displacement of particles by a method.
 
     It is made of a case and the observable, and raises CaseError where there is nothing to follow.
     `axes` are those that count; `length` particles make a molecule, of which there are `number`.
@@ -74,7 +74,7 @@ class Displacement(Protocol):
 
 
 @component
-class MeanSquareDisplacement(Observable):
+class MeanSquareDisplacement(OfMethod):
     """Mean square displacement at lags from one sample to `max_lag`, about equally spaced in log.
 
     Axes along which the fluid flows or that a wall closes are left out unless given. In a fluid of
@@ -82,6 +82,9 @@ class MeanSquareDisplacement(Observable):
     """
 
     quantity: Literal["mean-square-displacement"] = tag("mean-square-displacement")
+    methods: ClassVar[tuple[str, ...]] = ()  # those that offer it
+    drawing = "displacement"
+    units: ClassVar[dict[str, str]] = {"value": "a^2", "time": "tau"}
     in_open_box: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
     of: Literal["particles", "beads", "centres"] = param(
@@ -98,15 +101,6 @@ class MeanSquareDisplacement(Observable):
         None, doc="axes that count (all without flow and walls unless said)", min_length=1
     )
 
-    def displacement(self, case: Case) -> Displacement:
-        """What the method of a case says of it. Raises CaseError if there is nothing to follow."""
-        found: Displacement = method_of(case).expected["mean-square-displacement"](case, self)
-        return found
-
-    def check(self, case: Case) -> None:
-        """Raise CaseError without an axis or a molecule to follow."""
-        self.displacement(case)
-
 
 def _square_distance(old: Array, new: Array) -> Array:
     difference = new - old
@@ -119,10 +113,10 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("origins",)
 
-    def __init__(self, observable: MeanSquareDisplacement, case: Case) -> None:
-        self.observable, self.name = observable, observable.label
-        self.theory = observable.displacement(case)
-        self.axes, self.timestep = self.theory.axes, method_of(case).timestep(case)
+    def prepare(self) -> None:
+        observable, self.timestep = self.observable, method_of(self.case).timestep(self.case)
+        self.theory: Displacement = observable.theory(self.case)
+        self.axes, self.centres = self.theory.axes, observable.of == "centres"
         max_lag = max(1, observable.max_lag // observable.every)
         length, number = self.theory.length, self.theory.number
         if length == 1:
@@ -137,11 +131,6 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         rows = followed if self.centres else len(self.ids)
         self.origins = Origins(rows, len(self.axes), max_lag, min(GROUPS, followed))
 
-    @property
-    def centres(self) -> bool:
-        """Whether centres of mass are followed."""
-        return self.observable.of == "centres"
-
     def observe(self, engine: Particles) -> None:
         position = engine.positions(self.ids, unwrapped=True)[:, list(self.axes)]
         if self.centres:
@@ -150,56 +139,40 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """The curve and its slope where it is a straight line."""
-        steps = self.origins.sampled() * self.observable.every
-        moved = self.origins.estimate()
-        time = steps * self.timestep
-        curve = None
-        comparisons: list[Comparison] = []
-        slope = late_slope(time, moved, self.theory.diffusive_from(), self.theory.grows())
+        steps, moved = self.origins.sampled() * self.observable.every, self.origins.estimate()
+        time, theory = steps * self.timestep, self.theory
+        expected, found = theory.expected(steps), list[Comparison]()
+        slope = late_slope(time, moved, theory.diffusive_from(), theory.grows())
         if slope is not None:
-            curve, comparisons = slope.line, [self.diffusion(slope)]
-        elif len(time) > 1 and math.isfinite(first := self.theory.diffusive_from()):
+            found.append(self.diffusion(slope))
+        elif len(time) > 1 and math.isfinite(first := theory.diffusive_from()):
             why = f"undetermined: fewer than three lags from {first:.3g} to {time[-1]:.3g} tau"
-            known = self.theory.coefficient()[0]
-            what, unit = "diffusion coefficient", "a^2/tau"
-            comparisons = [Comparison(what, math.nan, math.nan, known, unit, why)]
-        expected = self.theory.expected(steps)
-        level = time >= self.theory.level_from()
+            what, known = "diffusion coefficient", theory.coefficient()[0]
+            found.append(Comparison(what, math.nan, math.nan, known, "a^2/tau", why))
+        level = time >= theory.level_from()
         if level.any() and expected is not None:
-            mean = level / level.sum()
-            measured = moved.scalar(mean @ moved.value, mean)
+            mean, wanted = level / level.sum(), expected[level].mean()
             what = "mean square displacement, levelled off"
-            comparisons.append(Comparison(what, *measured, expected[level].mean(), "a^2"))
-        elif np.isfinite(self.theory.level_from()) and len(steps) > 1:
-            comparisons.append(self.not_levelled(steps, moved))
-        return Result(
-            quantity="mean-square-displacement",
-            drawing="displacement",
-            name=self.name,
-            x={"time": time},
-            value=moved.value,
-            error=moved.error,
+            found.append(Comparison(what, *moved.total(mean), wanted, "a^2"))
+        elif np.isfinite(theory.level_from()) and len(steps) > 1:
+            begin = math.ceil(theory.level_from() / self.timestep)
+            note = (
+                f"theory knows the level, from lag {begin} steps on; the longest here is "
+                f"{steps[-1]}: a larger max_lag"
+            )
+            last, what = np.eye(len(steps))[-1], "mean square displacement at the longest lag"
+            found.append(Comparison(what, *moved.total(last), math.nan, "a^2", note))
+        return self.report(
+            {"time": time},
+            moved,
+            found,
             label="mean square displacement" + " of centres of mass" * self.centres,
-            units={"value": "a^2", "time": "tau"},
             expected=expected,
-            fit=curve,
-            theory=self.theory.legend(),
-            comparisons=tuple(comparisons),
+            fit=None if slope is None else slope.line,
+            theory=theory.legend(),
             samples=self.origins.count,
             extra={"components": "".join("xyz"[axis] for axis in self.axes)},
         )
-
-    def not_levelled(self, steps: Integers, moved: Estimate) -> Comparison:
-        """The displacement at the longest lag, which is too short for the level of theory."""
-        last = np.zeros(len(steps))
-        last[-1] = 1.0
-        first = math.ceil(self.theory.level_from() / self.timestep)
-        note = (
-            f"theory knows the level, from lag {first} steps on; the longest here is {steps[-1]}: "
-            "a larger max_lag"
-        )
-        what = "mean square displacement at the longest lag"
-        return Comparison(what, *moved.scalar(last @ moved.value, last), math.nan, "a^2", note)
 
     def diffusion(self, slope: Slope) -> Comparison:
         """The diffusion coefficient beside theory, or why it is not known."""
@@ -207,17 +180,13 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         value, error = slope.value * scale, slope.error * scale
         error = self.theory.with_start(error, value, self.origins.series)
         expected, note = self.theory.coefficient()
-        what = "diffusion coefficient"
         if slope.growth:
-            trend = "grows" if slope.growth > 0 else "falls"
             short = not (slope.straight or self.theory.grows())
             why = ": no straight line yet, a larger max_lag" if short else ""
+            trend = f"approximate: {'grows' if slope.growth > 0 else 'falls'} with the lag{why}"
             decade = "error bar with its change in a decade of lags"
-            rest = note.removeprefix("approximate: ")
-            note = "; ".join(
-                filter(None, (f"approximate: {trend} with the lag{why}", decade, rest))
-            )
-        return fitted_number(what, value, error, expected, "a^2/tau", note)
+            note = joined(trend, decade, note.removeprefix("approximate: "))
+        return fitted_number("diffusion coefficient", value, error, expected, "a^2/tau", note)
 
 
 # A displacement bends from free flight to diffusion, and the fit must begin beyond. Fits over
@@ -266,7 +235,6 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
         return None
     basis = np.stack([np.ones_like(time), time], axis=1)
     windows = [use & (time >= start) for start in _starts(time[use])]
-    fits = [fit(curve, basis, _weight(time, window)) for window in windows]
     slopes = np.stack([_row(time, basis, window) for window in windows])
     value = slopes @ curve.value
     apart = slopes[:, None] - slopes[None]  # differences of any two
@@ -274,6 +242,7 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     off = abs(value[:, None] - value[None])
     agree = [bool((off[k, k + 1 :] <= AGREE * noise[k, k + 1 :]).all()) for k in range(len(value))]
     chosen = agree.index(True)  # of the last there is nothing to differ from
+    line = fit(curve, basis, _weight(time, windows[chosen])).value
     straight = len(value) == 1 or chosen < len(value) - 1
     errors = curve.linear(slopes).error
     spread = _scatter(off[chosen, chosen:], noise[chosen, chosen:], errors[chosen:])
@@ -282,7 +251,7 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     return Slope(
         float(value[chosen]),
         float(np.sqrt(errors[chosen] ** 2 + spread + growth**2)),
-        np.where(windows[chosen], basis @ fits[chosen].value, np.nan),
+        np.where(windows[chosen], basis @ line, np.nan),
         straight,
         growth,
     )
