@@ -40,6 +40,8 @@ class NumberFluctuations(FlockObservable):
 
     quantity: Literal["number-fluctuations"] = tag("number-fluctuations")
     among_walls: ClassVar[bool] = False
+    drawing, value_label = "number fluctuations", "standard deviation of the number"
+    units: ClassVar[dict[str, str]] = {"mean number": ""}
     sides: Either[None, float] = param(
         None,
         doc="sides of the squares (1, 2, 4, ... times the reach of sight, up to a quarter of the "
@@ -79,11 +81,11 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "order")
 
-    def __init__(self, observable: NumberFluctuations, case: Case) -> None:
-        self.case, self.name = case, observable.label
-        self.sides = observable.all_sides(case)
-        self.size = np.array(case.box.size, float)
-        self.mean = case.particles * np.array(self.sides) ** len(self.size) / self.size.prod()
+    def prepare(self) -> None:
+        self.sides = self.observable.all_sides(self.case)
+        self.size = np.array(self.case.box.size, float)
+        sides, d = np.array(self.sides), len(self.size)
+        self.mean = self.case.particles * sides**d / self.size.prod()
         self.blocks, self.order = Blocks(len(self.sides)), Blocks()
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
@@ -102,41 +104,29 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """Standard deviations."""
-        variance = of_mean(self.blocks)
+        variance, order = of_mean(self.blocks), float(self.order.mean())
         with np.errstate(invalid="ignore", divide="ignore"):
             value = np.sqrt(variance.value)
             error = variance.error / (2 * value)
-        # birds at random: a fixed number of them is spread over the box
-        poisson = np.sqrt(self.mean * (1 - self.mean / self.case.particles))
-        found = self.comparisons() if self.blocks.count and len(self.sides) >= FEWEST else []
-        return Result(
-            quantity="number-fluctuations",
-            drawing="number fluctuations",
-            name=self.name,
-            x={"mean number": self.mean},
-            value=value,
-            error=error,
-            label="standard deviation of the number",
-            units={"value": "", "mean number": ""},
-            expected=poisson,
+        return self.report(
+            {"mean number": self.mean},
+            (value, error),
+            [self.exponent()] if len(self.sides) >= FEWEST else [],
+            # birds at random: a fixed number of them is spread over the box
+            expected=np.sqrt(self.mean * (1 - self.mean / self.case.particles)),
             theory="birds at random",
-            comparisons=tuple(found),
-            samples=self.blocks.count,
-            extra={
-                "sides": np.array(self.sides),
-                "guide": giant_exponent(self.case, float(self.order.mean())),
-            },
+            extra={"sides": np.array(self.sides), "guide": giant_exponent(self.case, order)},
         )
 
-    def comparisons(self) -> list[Comparison]:
-        """The exponent: slope of the logarithms, by least squares."""
+    def exponent(self) -> Comparison | None:
+        """Slope of the logarithms, by least squares; None where a variance is 0."""
         variance, case = of_mean(self.blocks), self.case
         use = np.arange(len(self.sides)) >= len(self.sides) - FITTED
         x = np.log(self.mean[use]) - np.log(self.mean[use]).mean()
         weight = np.zeros(len(self.sides))
         weight[use] = x / (x**2).sum()
         if not (variance.value[use] > 0).all():
-            return []
+            return None
         at = np.where(use, variance.value, 1.0)
         slope = 0.5 * float(weight @ np.log(at))
         # of birds at random, a fixed number of which is in the box
@@ -145,11 +135,11 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
             root = 0.5 * float(weight[use] @ np.log(self.mean * (1 - share))[use])
         measured = variance.scalar(slope, 0.5 * weight / at)
         expected, note = number_exponent(case, float(self.order.mean()), root)
-        return [Comparison("exponent of number fluctuations", *measured, expected, "", note)]
+        return Comparison("exponent of number fluctuations", *measured, expected, "", note)
 
 
 def counts_in_squares(places: Array, side: float, size: Array) -> Array:
-    """How many places lie in each of the whole squares of a side that fit the box."""
+    """Number of places in each of the whole squares of a side that fit the box."""
     many = np.floor(size / side * (1 + 1e-12)).astype(int)
     bins = np.floor(places / side).astype(int)
     inside = (bins < many).all(axis=1)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from mesokit.case.case import Case
 from mesokit.case.component import component, tag
-from mesokit.method.flock.expected import polar_order
+from mesokit.method.flock.expected import KnownOrder, polar_order
 from mesokit.method.flock.observe.protocol import FlockObservable
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
@@ -29,6 +29,8 @@ class PolarOrder(FlockObservable):
     """
 
     quantity: Literal["polar-order"] = tag("polar-order")
+    drawing, value_label = "order", "polar order"
+    units: ClassVar[dict[str, str]] = {"time": "tau"}
 
 
 @accumulator_of(PolarOrder)
@@ -37,9 +39,8 @@ class PolarOrderAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series")
 
-    def __init__(self, observable: PolarOrder, case: Case) -> None:
-        self.case, self.name = case, observable.label
-        self.blocks, self.series = Blocks(3), TimeSeries(1 + case.box.dimension)
+    def prepare(self) -> None:
+        self.blocks, self.series = Blocks(3), TimeSeries(1 + self.case.box.dimension)
 
     def observe(self, engine: Flocks) -> None:
         mean = engine.headings().mean(axis=0)
@@ -49,22 +50,15 @@ class PolarOrderAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """The order in time, whose points are no means of their own: the error is nan."""
-        rows = self.series.values()
-        found = self.comparisons() if self.blocks.count else []
-        level = found[0].expected if found else math.nan
-        return Result(
-            quantity="polar-order",
-            drawing="order",
-            name=self.name,
-            x={"time": self.series.time()},
-            value=rows[:, 0],
-            error=np.full(len(rows), np.nan),
-            label="polar order",
-            units={"value": "", "time": "tau"},
-            expected=None if math.isnan(level) else np.full(len(rows), level),
-            theory="" if math.isnan(level) else polar_order(self.case).note,
-            comparisons=tuple(found),
-            samples=self.blocks.count,
+        rows, known = self.series.values(), polar_order(self.case)
+        found = list(self.comparisons(known)) if self.blocks.count else []
+        theory = not math.isnan(known.order) and self.blocks.count > 0
+        return self.report(
+            {"time": self.series.time()},
+            rows[:, 0],
+            found,
+            expected=np.full(len(rows), known.order) if theory else None,
+            theory=known.note if theory else "",
             extra={
                 "heading": rows[:, 1:],
                 "mean": found[0].measured if found else math.nan,
@@ -72,27 +66,20 @@ class PolarOrderAccumulator(BlockAccumulator):
             },
         )
 
-    def comparisons(self) -> list[Comparison]:
+    def comparisons(self, known: KnownOrder) -> Iterator[Comparison]:
         """Mean, mean square, Binder cumulant and susceptibility."""
-        number = self.case.particles
-        means = of_mean(self.blocks)
+        number, means, note = self.case.particles, of_mean(self.blocks), known.note
         order, square, fourth = map(float, means.value)
+        first, second, _ = np.eye(3)
+        measured = means.scalar(order, first)
+        yield Comparison("mean polar order", *measured, known.order, "", note)
+        measured = means.scalar(square, second)
+        yield Comparison("mean square polar order", *measured, known.square, "", note)
         cumulant = 1 - fourth / (3 * square**2) if square > 0 else math.nan
         slope = np.array([0.0, 2 * fourth / (3 * square**3), -1 / (3 * square**2)])
-        known = polar_order(self.case)
-        note = known.note
-        one = np.eye(3)
-        return [
-            Comparison("mean polar order", *means.scalar(order, one[0]), known.order, "", note),
-            Comparison(
-                "mean square polar order", *means.scalar(square, one[1]), known.square, "", note
-            ),
-            Comparison("Binder cumulant", *means.scalar(cumulant, slope), known.cumulant, "", note),
-            Comparison(
-                "susceptibility",
-                *means.scalar(
-                    number * (square - order**2), number * np.array([-2 * order, 1.0, 0])
-                ),
-                note=f"number of birds times the variance of the order, {number} birds",
-            ),
-        ]
+        measured = means.scalar(cumulant, slope)
+        yield Comparison("Binder cumulant", *measured, known.cumulant, "", note)
+        slope = number * np.array([-2 * order, 1.0, 0])
+        measured = means.scalar(number * (square - order**2), slope)
+        note = f"number of birds times the variance of the order, {number} birds"
+        yield Comparison("susceptibility", *measured, note=note)

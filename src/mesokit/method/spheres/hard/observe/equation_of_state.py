@@ -1,6 +1,7 @@
 """Pressure and collision rate of hard spheres."""
 
 import math
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -10,15 +11,16 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.enskog import fluid_note, speed_factor
+from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.engine import CollidingSpheres
-from mesokit.seam.estimate import Estimate, of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.estimate import of_mean
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 
 @component
-class EquationOfState(Observable):
+class EquationOfState(OfSpheres):
     """Z = P/(n kT) of spheres that keep energy, by the virial and, of hard ones, by the rate.
 
     By the virial Z = 1 + sum of r.dp over collisions/(d N kT t), where d (N - 1) kT is twice the
@@ -29,8 +31,8 @@ class EquationOfState(Observable):
 
     quantity: Literal["equation-of-state"] = tag("equation-of-state")
     methods: ClassVar[tuple[str, ...]] = ("event-driven",)
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
+    value_label = "compressibility $P/(n k_B T)$"
+    units: ClassVar[dict[str, str]] = {"measured by": ""}
 
     def check(self, case: Case) -> None:
         """Raise CaseError where there is no pressure of a uniform fluid."""
@@ -48,8 +50,7 @@ class EquationOfStateAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
-    def __init__(self, observable: EquationOfState, case: Case) -> None:
-        self.name, self.case, self.every = observable.label, case, observable.every
+    def prepare(self) -> None:
         self.blocks = Blocks((3,))  # virial and collisions per time, twice the kinetic energy
         self.before = np.full(3, np.nan)  # time, virial, collisions at the last sample
 
@@ -64,54 +65,44 @@ class EquationOfStateAccumulator(BlockAccumulator):
     def result(self) -> Result:
         """Z by the virial and, of equal hard spheres, by the rate of collisions."""
         pressures, rate = self.measured()
-        expected, theory_name = self.expected()
+        expected, law = self.expected()
         names = ["virial", "collision rate"][: len(pressures)]
-        values = np.array([value for value, _ in pressures])
-        errors = np.array([error for _, error in pressures])
         hard = self.case.spheres.collision.hard
         note = (fluid_note(self.case) or self._note_of_few(expected)) if hard else ""
         if self.blocks.count and rate[0] == 0:
             note = "undetermined: no collision was seen"
-        listed = [
-            Comparison(f"Z by the {name}", *found, expected, "", note)
-            for name, found in zip(names, pressures, strict=True)
-        ]
-        if self.blocks.count:
-            listed.append(Comparison("collision rate", *rate, self.expected_rate(), "1/tau", note))
-        return Result(
-            quantity="equation-of-state",
-            drawing="curve",
-            name=self.name,
-            x={"measured by": np.array(names)},
-            value=values,
-            error=errors,
-            label="compressibility $P/(n k_B T)$",
-            units={"value": "", "measured by": ""},
+
+        def comparisons() -> Iterator[Comparison]:
+            for name, found in zip(names, pressures, strict=True):
+                yield Comparison(f"Z by the {name}", *found, expected, "", note)
+            yield Comparison("collision rate", *rate, self.expected_rate(), "1/tau", note)
+
+        values, errors = np.transpose(pressures)
+        return self.report(
+            {"measured by": names},
+            (values, errors),
+            comparisons(),
             expected=np.full(len(names), expected),
-            theory=theory_name,
-            comparisons=tuple(listed) if self.blocks.count else (),
-            samples=self.blocks.count,
+            theory=law,
             extra={"packing_fraction": self.case.spheres.fraction(self.case.box)},
         )
 
     def measured(self) -> tuple[list[tuple[float, float]], tuple[float, float]]:
         """Z with its error by each way, and the collisions of a sphere per time."""
-        case, n = self.case, self.case.particles
-        d = case.box.dimension
+        case, n, d = self.case, self.case.particles, self.case.box.dimension
+        undetermined = [(math.nan, math.nan)] * (2 if self.equal else 1)
         if not self.blocks.count:
-            none = (math.nan, math.nan)
-            return [none] * (2 if self.equal else 1), none
-        found: Estimate = of_mean(self.blocks)
+            return undetermined, (math.nan, math.nan)
+        found = of_mean(self.blocks)
         virial, events, twice = found.value
         if not events:  # none of these numbers is known then
-            return [(math.nan, math.nan)] * (2 if self.equal else 1), (0.0, math.nan)
+            return undetermined, (0.0, math.nan)
         kT = twice / (d * (n - 1))  # momentum is zero
         gradient = np.array([1 / (d * n * kT), 0.0, -virial / (d * n * kT * twice)])
         pressures = [found.scalar(1 + virial / (d * n * kT), gradient)]
         if self.equal:
-            kind, box = case.spheres.kinds[0], case.box
-            mass = kind.mean_mass(d)
-            factor = kind.diameter * case.spheres.scale(box) * math.sqrt(math.pi * mass / kT)
+            kind, scale = case.spheres.kinds[0], case.spheres.scale(case.box)
+            factor = kind.diameter * scale * math.sqrt(math.pi * kind.mean_mass(d) / kT)
             factor *= 2 / n / (2 * d) / speed_factor(case)
             gradient = np.array([0.0, factor, -0.5 * factor * events / twice])
             pressures.append(found.scalar(1 + factor * events, gradient))
@@ -131,10 +122,8 @@ class EquationOfStateAccumulator(BlockAccumulator):
         z = theory.compressibility_of_few(self._law, section.fraction(box), self.case.particles)
         if self.equal:
             return z, "virial series" if box.dimension == 2 else "Kolafa"
-        return (
-            z,
-            "Santos, Yuste, Lopez de Haro" if box.dimension == 2 else "Boublik, Mansoori et al.",
-        )
+        plane, space = "Santos, Yuste, Lopez de Haro", "Boublik, Mansoori et al."
+        return z, plane if box.dimension == 2 else space
 
     def _law(self, phi: float) -> float:
         """Z of many such spheres at a packing fraction."""
@@ -143,13 +132,9 @@ class EquationOfStateAccumulator(BlockAccumulator):
         if self.equal:
             return theory.compressibility(phi, d)
         counts, scale = section.counts(box), section.scale(box)
-        total = sum(counts)
+        kinds = list(zip(counts, section.kinds, strict=True))
         moments = [
-            sum(
-                n * kind.mean_power(p) * scale**p
-                for n, kind in zip(counts, section.kinds, strict=True)
-            )
-            / total
+            sum(n * kind.mean_power(p) * scale**p for n, kind in kinds) / sum(counts)
             for p in range(1, d + 1)
         ]
         return theory.mixture_compressibility(phi, moments, d)
