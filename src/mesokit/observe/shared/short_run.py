@@ -8,13 +8,7 @@ import numpy as np
 
 from mesokit.observe.shared.caveats import FEW_SAMPLES, LOWER_BOUND
 from mesokit.seam.result import Comparison, Result
-from mesokit.statistics import (
-    FEWEST_BLOCKS,
-    FEWEST_PIECES,
-    Blocks,
-    TimeSeries,
-    correlated,
-)
+from mesokit.statistics import FEWEST_BLOCKS, FEWEST_PIECES, Blocks, TimeSeries, correlated
 
 NO_ERROR = "no error bar"
 MOST = 0.5  # of the means of an observable that may have few independent pieces
