@@ -234,7 +234,10 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     if use.sum() < FEWEST:
         return None
     basis = np.stack([np.ones_like(time), time], axis=1)
-    windows = [use & (time >= start) for start in _starts(time[use])]
+    last, starts = time[use][-1], [float(time[use][0])]  # where windows of an octave or more begin
+    while 4 * starts[-1] <= last and (use & (time >= 2 * starts[-1])).sum() >= FEWEST:
+        starts.append(2 * starts[-1])
+    windows = [use & (time >= start) for start in starts]
     slopes = np.stack([_row(time, basis, window) for window in windows])
     value = slopes @ curve.value
     apart = slopes[:, None] - slopes[None]  # differences of any two
@@ -245,7 +248,11 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     line = fit(curve, basis, _weight(time, windows[chosen])).value
     straight = len(value) == 1 or chosen < len(value) - 1
     errors = curve.linear(slopes).error
-    spread = _scatter(off[chosen, chosen:], noise[chosen, chosen:], errors[chosen:])
+    # mean square of what slopes differ by beyond noise, each weighing by its own error
+    weight, spread = 1 / errors[chosen:] ** 2, 0.0
+    if np.isfinite(weight).all():
+        beyond = off[chosen, chosen:] ** 2 - noise[chosen, chosen:] ** 2
+        spread = max(0.0, float((weight * beyond).sum() / weight.sum()))
     bend, unsure = _bend(time, curve, use if straight else windows[-2])
     growth = DECADE * bend if not straight or (grows and bend > CHANGES * unsure) else 0.0
     return Slope(
@@ -257,14 +264,6 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     )
 
 
-def _starts(time: Array) -> list[float]:
-    """Where windows begin: at the first lag, then at twice the one before, an octave at least."""
-    starts = [float(time[0])]
-    while 4 * starts[-1] <= time[-1] and (time >= 2 * starts[-1]).sum() >= FEWEST:
-        starts.append(2 * starts[-1])
-    return starts
-
-
 def _weight(time: Array, window: NDArray[np.bool_]) -> Array:
     """1/t^2 within a window."""
     return np.where(window, 1 / np.maximum(time, time[window][0]) ** 2, 0.0)
@@ -274,14 +273,6 @@ def _row(time: Array, basis: Array, window: NDArray[np.bool_], coefficient: int 
     """The combination (n,) of the values that a coefficient of a fit is."""
     root = np.sqrt(_weight(time, window))[:, None]
     return np.asarray((np.linalg.pinv(basis * root) * root.T)[coefficient])
-
-
-def _scatter(off: Array, noise: Array, errors: Array) -> float:
-    """Mean square of what slopes differ by beyond noise, each weighing by its own error."""
-    weight = 1 / errors**2
-    if not np.isfinite(weight).all():
-        return 0.0
-    return max(0.0, float((weight * (off**2 - noise**2)).sum() / weight.sum()))
 
 
 def _bend(time: Array, curve: Estimate, use: NDArray[np.bool_]) -> tuple[float, float]:

@@ -1,9 +1,7 @@
 """Clusters: birds that are in reach of one another, directly or through others."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,15 +10,12 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.method.flock.observe.protocol import FlockObservable
+from mesokit.method.flock.observe.protocol import FlockObservable, RunningFlock
 from mesokit.method.flock.section import ball
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.method.flock.engine.flocks import Flocks
 
 MOST_PAIRS = 5e7  # in one sample: more take gigabytes
 
@@ -75,7 +70,7 @@ class ClusterSizesAccumulator(BlockAccumulator):
         self.bins = self.case.particles.bit_length()
         self.blocks = Blocks(self.bins + 2)
 
-    def observe(self, engine: Flocks) -> None:
+    def observe(self, engine: RunningFlock) -> None:
         sizes = clusters(engine.positions(), self.near, self.around)
         number = self.case.particles
         of_size = np.floor(np.log2(sizes) + 1e-9).astype(int)

@@ -1,10 +1,8 @@
 """Bands: density and order along the direction in which a flock flies."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +12,11 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.flock.expected import at_random
-from mesokit.method.flock.observe.protocol import FlockObservable
+from mesokit.method.flock.observe.protocol import FlockObservable, RunningFlock
 from mesokit.seam.estimate import of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.method.flock.engine.flocks import Flocks
 
 MOST_BINS = 2**16
 WAVES = 8  # the longest, that tell where the crest is
@@ -69,7 +64,7 @@ class DensityBandsAccumulator(BlockAccumulator):
         wave = np.arange(1, WAVES + 1)[:, None]
         self.waves = np.exp(-2j * np.pi * wave * np.arange(FINE) / FINE)
 
-    def observe(self, engine: Flocks) -> None:
+    def observe(self, engine: RunningFlock) -> None:
         headings = engine.headings()
         mean = headings.mean(axis=0)
         axis = int(np.argmax(np.abs(mean))) if self.axis is None else self.axis

@@ -1,10 +1,8 @@
 """How much the number of birds in a part of the box fluctuates."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +12,11 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
 from mesokit.method.flock.expected import giant_exponent, number_exponent
-from mesokit.method.flock.observe.protocol import FlockObservable
+from mesokit.method.flock.observe.protocol import FlockObservable, RunningFlock
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of, pack
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.method.flock.engine.flocks import Flocks
 
 LARGEST = 0.25  # side of the largest squares unless said, in the shortest length of the box
 FITTED = 4  # of the largest, whose exponent is fitted
@@ -92,7 +87,7 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
         """Go on from `state()`, in which earlier versions had no order."""
         super().restore(pack(order=self.order) | dict(state))
 
-    def observe(self, engine: Flocks) -> None:
+    def observe(self, engine: RunningFlock) -> None:
         places = engine.positions()
         self.order.add(float(np.linalg.norm(engine.headings().mean(axis=0))))
         self.blocks.add(

@@ -1,23 +1,18 @@
 """Polar order: how far birds fly the same way, its fluctuations, and the mean direction."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mesokit.case.component import component, tag
 from mesokit.method.flock.expected import KnownOrder, polar_order
-from mesokit.method.flock.observe.protocol import FlockObservable
+from mesokit.method.flock.observe.protocol import FlockObservable, RunningFlock
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
-
-if TYPE_CHECKING:
-    from mesokit.method.flock.engine.flocks import Flocks
 
 
 @component
@@ -42,7 +37,7 @@ class PolarOrderAccumulator(BlockAccumulator):
     def prepare(self) -> None:
         self.blocks, self.series = Blocks(3), TimeSeries(1 + self.case.box.dimension)
 
-    def observe(self, engine: Flocks) -> None:
+    def observe(self, engine: RunningFlock) -> None:
         mean = engine.headings().mean(axis=0)
         order = float(np.linalg.norm(mean))
         self.blocks.add([order, order**2, order**4])

@@ -1,11 +1,12 @@
-"""Base class of observables of flocks."""
+"""Base class of observables of flocks, and what they read of an engine."""
 
 from abc import ABC
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 from mesokit.case.case import Case
 from mesokit.case.component import component, name_of
 from mesokit.errors import CaseError
+from mesokit.seam.engine import Array, Particles
 from mesokit.seam.observable import Observable
 
 
@@ -24,3 +25,9 @@ class FlockObservable(Observable, ABC):
             raise CaseError(
                 f"quantity = '{name_of(self)}': not among walls, which make the mean density uneven"
             )
+
+
+class RunningFlock(Particles, Protocol):
+    """Readings of an engine of birds: unit vectors (n, d) along which they head."""
+
+    def headings(self) -> Array: ...

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from typing import ClassVar, Literal, NamedTuple
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -38,14 +38,6 @@ class CollisionRate(OfSpheres):
     units: ClassVar[dict[str, str]] = {"value": "1/tau", "with": ""}
 
 
-class Few(NamedTuple):
-    """What is known of the rate of rare collisions: the least error, theory, and why."""
-
-    error: float = 0.0
-    expected: float = math.nan
-    note: str = ""
-
-
 @accumulator_of(CollisionRate)
 class CollisionRateAccumulator(BlockAccumulator):
     """Block averages of what has happened between two samples."""
@@ -72,16 +64,16 @@ class CollisionRateAccumulator(BlockAccumulator):
         """The three rates."""
         value, error, spheres = self.blocks.mean(), self.blocks.error(), self.case.spheres
         known = np.array([pair_rate(self.case, float(value[3])), math.nan, math.nan])
-        contact_time, few = spheres.collision.contact_time, Few()
+        contact_time, rare = spheres.collision.contact_time, ""
         if contact_time and not self.case.walls:
             known[2] = known[0] * theory.elastic_share(float(value[0]), contact_time)
-            few = self.few(float(value[2]), float(known[2]))
-            error[2], known[2] = max(error[2], few.error), few.expected
+            least, known[2], rare = self.of_few(float(value[2]), float(known[2]))
+            error[2] = max(error[2], least)
         # that of a contact time counts walls as well, which are not told apart
         shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
         drawn = 2 if self.case.walls else 1
         note = "" if spheres.collision.elastic else "approximate: molecular chaos"
-        notes = [note, note, joined("" if math.isnan(known[2]) else NEIGHBOURS, few.note)]
+        notes = [note, note, joined("" if math.isnan(known[2]) else NEIGHBOURS, rare)]
 
         def comparisons() -> Iterator[Comparison]:
             for k in shown:
@@ -98,19 +90,22 @@ class CollisionRateAccumulator(BlockAccumulator):
             theory="Enskog",
         )
 
-    def few(self, rate: float, known: float) -> Few:
-        """Of few collisions blocks do not know the error: it is Poisson's then, of as many as there
-        are or are to be expected. Where none has been seen and few are, nothing can be compared."""
+    def of_few(self, rate: float, known: float) -> tuple[float, float, str]:
+        """The least error of a rate of few collisions, its theory, and a note.
+
+        Of few collisions blocks do not give the error: it is Poisson's then, of as many as there
+        are or are expected. Where none has been seen and few are, nothing can be compared.
+        """
         spacing = self.observable.every * float(self.case.spheres.timestep)
         each = 2 / (self.case.particles * max(1, self.blocks.count) * spacing)  # rate of one
         seen, awaited = rate / each, known / each
         if max(seen, 0.0 if math.isnan(awaited) else awaited) >= MANY:
-            return Few(expected=known)
+            return 0.0, known, ""
         text = f"{round(seen)} seen, {awaited:.2g} expected" if known >= 0 else f"{seen:.0f} seen"
         if seen < 0.5 and not awaited >= ENOUGH:
-            return Few(each, note=f"{text}: the error is that of one")
+            return each, math.nan, f"{text}: the error is that of one"
         most = max(seen, awaited) if known >= 0 else seen
-        return Few(math.sqrt(most) * each, known, f"{text}: Poisson's error")
+        return math.sqrt(most) * each, known, f"{text}: Poisson's error"
 
     def free_path(self, note: str) -> Comparison:
         """Mean speed over the rate, which Maxwell's velocities relate to one another."""
