@@ -1,10 +1,8 @@
 """Pictures of the flow in time: density and velocity on a grid, window after window."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,7 +144,7 @@ class FlowFramesAccumulator(BlockAccumulator):
         self.sums = np.array(state["sums"])
         self.samples, self.time = int(state["samples"]), float(state["time"])
 
-    def pool(self, other: FlowFramesAccumulator) -> None:
+    def pool(self, other: Self) -> None:
         """Take in the samples of an independent run of the same case: only to read.
 
         Windows that both have seen whole become their means; particles stay those of the first.

@@ -1,7 +1,5 @@
 """Mean square displacement of particles or of molecules, and their diffusion coefficient."""
 
-from __future__ import annotations
-
 import math
 from typing import ClassVar, Literal, NamedTuple, Protocol
 
@@ -107,88 +105,6 @@ def _square_distance(old: Array, new: Array) -> Array:
     return np.einsum("ij,ij->i", difference, difference)
 
 
-@accumulator_of(MeanSquareDisplacement)
-class MeanSquareDisplacementAccumulator(BlockAccumulator):
-    """Unwrapped positions at many origins."""
-
-    memory: ClassVar[tuple[str, ...]] = ("origins",)
-
-    def prepare(self) -> None:
-        observable, self.timestep = self.observable, method_of(self.case).timestep(self.case)
-        self.theory: Displacement = observable.theory(self.case)
-        self.axes, self.centres = self.theory.axes, observable.of == "centres"
-        max_lag = max(1, observable.max_lag // observable.every)
-        length, number = self.theory.length, self.theory.number
-        if length == 1:
-            self.ids = self.theory.beads(observable.particles).ravel()
-            self.origins = Origins(len(self.ids), len(self.axes), max_lag)
-            return
-        wanted = observable.particles if self.centres else -(-observable.particles // length)
-        followed = min(wanted, number)
-        followed -= followed % GROUPS if followed > GROUPS else 0
-        # bead after bead, so that one molecule is in one group: its beads are not independent
-        self.ids = self.theory.beads(followed).T.ravel()
-        rows = followed if self.centres else len(self.ids)
-        self.origins = Origins(rows, len(self.axes), max_lag, min(GROUPS, followed))
-
-    def observe(self, engine: Particles) -> None:
-        position = engine.positions(self.ids, unwrapped=True)[:, list(self.axes)]
-        if self.centres:
-            position = position.reshape(self.theory.length, -1, len(self.axes)).mean(axis=0)
-        self.origins.add(position, _square_distance)
-
-    def result(self) -> Result:
-        """The curve and its slope where it is a straight line."""
-        steps, moved = self.origins.sampled() * self.observable.every, self.origins.estimate()
-        time, theory = steps * self.timestep, self.theory
-        expected, found = theory.expected(steps), list[Comparison]()
-        slope = late_slope(time, moved, theory.diffusive_from(), theory.grows())
-        if slope is not None:
-            found.append(self.diffusion(slope))
-        elif len(time) > 1 and math.isfinite(first := theory.diffusive_from()):
-            why = f"undetermined: fewer than three lags from {first:.3g} to {time[-1]:.3g} tau"
-            what, known = "diffusion coefficient", theory.coefficient()[0]
-            found.append(Comparison(what, math.nan, math.nan, known, "a^2/tau", why))
-        level = time >= theory.level_from()
-        if level.any() and expected is not None:
-            mean, wanted = level / level.sum(), expected[level].mean()
-            what = "mean square displacement, levelled off"
-            found.append(Comparison(what, *moved.total(mean), wanted, "a^2"))
-        elif np.isfinite(theory.level_from()) and len(steps) > 1:
-            begin = math.ceil(theory.level_from() / self.timestep)
-            note = (
-                f"theory knows the level, from lag {begin} steps on; the longest here is "
-                f"{steps[-1]}: a larger max_lag"
-            )
-            last, what = np.eye(len(steps))[-1], "mean square displacement at the longest lag"
-            found.append(Comparison(what, *moved.total(last), math.nan, "a^2", note))
-        return self.report(
-            {"time": time},
-            moved,
-            found,
-            label="mean square displacement" + " of centres of mass" * self.centres,
-            expected=expected,
-            fit=None if slope is None else slope.line,
-            theory=theory.legend(),
-            samples=self.origins.count,
-            extra={"components": "".join("xyz"[axis] for axis in self.axes)},
-        )
-
-    def diffusion(self, slope: Slope) -> Comparison:
-        """The diffusion coefficient beside theory, or why it is not known."""
-        scale = 1 / (2 * len(self.axes))
-        value, error = slope.value * scale, slope.error * scale
-        error = self.theory.with_start(error, value, self.origins.series)
-        expected, note = self.theory.coefficient()
-        if slope.growth:
-            short = not (slope.straight or self.theory.grows())
-            why = ": no straight line yet, a larger max_lag" if short else ""
-            trend = f"approximate: {'grows' if slope.growth > 0 else 'falls'} with the lag{why}"
-            decade = "error bar with its change in a decade of lags"
-            note = joined(trend, decade, note.removeprefix("approximate: "))
-        return fitted_number("diffusion coefficient", value, error, expected, "a^2/tau", note)
-
-
 # A displacement bends from free flight to diffusion, and the fit must begin beyond. Fits over
 # windows that begin ever later, each at twice the lag of the one before, end at the same longest
 # lag. The first that agrees with all later ones is taken, and their scatter beyond noise goes into
@@ -287,3 +203,85 @@ def _bend(time: Array, curve: Estimate, use: NDArray[np.bool_]) -> tuple[float, 
     basis = np.stack([np.ones_like(t), t, t * np.log(np.where(t > 0, t, 1.0))], axis=1)
     row = _row(t, basis, use, 2) / time[use].max()
     return curve.scalar(row @ curve.value, row)
+
+
+@accumulator_of(MeanSquareDisplacement)
+class MeanSquareDisplacementAccumulator(BlockAccumulator):
+    """Unwrapped positions at many origins."""
+
+    memory: ClassVar[tuple[str, ...]] = ("origins",)
+
+    def prepare(self) -> None:
+        observable, self.timestep = self.observable, method_of(self.case).timestep(self.case)
+        self.theory: Displacement = observable.theory(self.case)
+        self.axes, self.centres = self.theory.axes, observable.of == "centres"
+        max_lag = max(1, observable.max_lag // observable.every)
+        length, number = self.theory.length, self.theory.number
+        if length == 1:
+            self.ids = self.theory.beads(observable.particles).ravel()
+            self.origins = Origins(len(self.ids), len(self.axes), max_lag)
+            return
+        wanted = observable.particles if self.centres else -(-observable.particles // length)
+        followed = min(wanted, number)
+        followed -= followed % GROUPS if followed > GROUPS else 0
+        # bead after bead, so that one molecule is in one group: its beads are not independent
+        self.ids = self.theory.beads(followed).T.ravel()
+        rows = followed if self.centres else len(self.ids)
+        self.origins = Origins(rows, len(self.axes), max_lag, min(GROUPS, followed))
+
+    def observe(self, engine: Particles) -> None:
+        position = engine.positions(self.ids, unwrapped=True)[:, list(self.axes)]
+        if self.centres:
+            position = position.reshape(self.theory.length, -1, len(self.axes)).mean(axis=0)
+        self.origins.add(position, _square_distance)
+
+    def result(self) -> Result:
+        """The curve and its slope where it is a straight line."""
+        steps, moved = self.origins.sampled() * self.observable.every, self.origins.estimate()
+        time, theory = steps * self.timestep, self.theory
+        expected, found = theory.expected(steps), list[Comparison]()
+        slope = late_slope(time, moved, theory.diffusive_from(), theory.grows())
+        if slope is not None:
+            found.append(self.diffusion(slope))
+        elif len(time) > 1 and math.isfinite(first := theory.diffusive_from()):
+            why = f"undetermined: fewer than three lags from {first:.3g} to {time[-1]:.3g} tau"
+            what, known = "diffusion coefficient", theory.coefficient()[0]
+            found.append(Comparison(what, math.nan, math.nan, known, "a^2/tau", why))
+        level = time >= theory.level_from()
+        if level.any() and expected is not None:
+            mean, wanted = level / level.sum(), expected[level].mean()
+            what = "mean square displacement, levelled off"
+            found.append(Comparison(what, *moved.total(mean), wanted, "a^2"))
+        elif np.isfinite(theory.level_from()) and len(steps) > 1:
+            begin = math.ceil(theory.level_from() / self.timestep)
+            note = (
+                f"theory knows the level, from lag {begin} steps on; the longest here is "
+                f"{steps[-1]}: a larger max_lag"
+            )
+            last, what = np.eye(len(steps))[-1], "mean square displacement at the longest lag"
+            found.append(Comparison(what, *moved.total(last), math.nan, "a^2", note))
+        return self.report(
+            {"time": time},
+            moved,
+            found,
+            label="mean square displacement" + " of centres of mass" * self.centres,
+            expected=expected,
+            fit=None if slope is None else slope.line,
+            theory=theory.legend(),
+            samples=self.origins.count,
+            extra={"components": "".join("xyz"[axis] for axis in self.axes)},
+        )
+
+    def diffusion(self, slope: Slope) -> Comparison:
+        """The diffusion coefficient beside theory, or why it is not known."""
+        scale = 1 / (2 * len(self.axes))
+        value, error = slope.value * scale, slope.error * scale
+        error = self.theory.with_start(error, value, self.origins.series)
+        expected, note = self.theory.coefficient()
+        if slope.growth:
+            short = not (slope.straight or self.theory.grows())
+            why = ": no straight line yet, a larger max_lag" if short else ""
+            trend = f"approximate: {'grows' if slope.growth > 0 else 'falls'} with the lag{why}"
+            decade = "error bar with its change in a decade of lags"
+            note = joined(trend, decade, note.removeprefix("approximate: "))
+        return fitted_number("diffusion coefficient", value, error, expected, "a^2/tau", note)

@@ -145,8 +145,14 @@ class RadialDistributionAccumulator(BlockAccumulator):
         observable, case = self.observable, self.case
         self.theory: Neighbours = observable.theory(case)
         self.first, self.second = self.theory.first, self.theory.second
-        self.beads, self.others = (
-            [self.sample(group) for group in groups] for groups in (self.first, self.second)
+        self.beads, self.others = (  # of each group (molecules, length), all or enough of them
+            [
+                group.beads(min(group.number, max(2, observable.particles // group.length)))
+                if self.theory.sampled(group)
+                else group.beads()
+                for group in groups
+            ]
+            for groups in (self.first, self.second)
         )
         self.box = np.array(case.box.size, float)
         reach = observable.reach or min(FARTHEST * self.theory.size, min(case.box.size) / 2)
@@ -160,13 +166,6 @@ class RadialDistributionAccumulator(BlockAccumulator):
         whole = len(self.first) == 1 and len(self.beads[0]) == self.first[0].number > 1
         alone = whole and not self.second and self.theory.independent(self.first)
         self.own = OwnPairs(len(self.beads[0]), observable.bins) if alone else None
-
-    def sample(self, group: Group) -> Ids:
-        """Beads (molecules, length) of a group, or of so many as have enough particles."""
-        if not self.theory.sampled(group):
-            return group.beads()
-        most = max(2, self.observable.particles // group.length)
-        return group.beads(min(group.number, most))
 
     def observe(self, fluid: RunningFluid) -> None:
         found = self.counts(fluid, self.edges) / self.shells
@@ -210,7 +209,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         return np.asarray(found, float)
 
     def places(self, fluid: RunningFluid, groups: list[Group], beads: list[Ids]) -> list[Array]:
-        """Of the sample in each group: other molecules each time, so that few tell of all soon."""
+        """Positions of the sample in each group: of other molecules at each sample."""
         found = []
         for group, ids in zip(groups, beads, strict=True):
             if len(ids) < group.number:

@@ -1,10 +1,8 @@
 """Height of the centre of mass of spheres in gravity, in time."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Self
 
 from mesokit import theory
 from mesokit.case.case import Case
@@ -30,6 +28,59 @@ class HeightInTime(OfSpheres):
     def check(self, case: Case) -> None:
         """Raise CaseError without gravity along one axis that plates close."""
         gravity_axis(case, "height-in-time")
+
+
+class Ball:
+    """One hard sphere that falls from rest on a floor, or would have fallen from there.
+
+    since: time since it was at rest, when one began to look.
+    """
+
+    def __init__(self, radius: float, gravity: float, rule: tuple[float, float], first: Array):
+        self.radius, self.gravity, (self.restitution, self.contact_time) = radius, gravity, rule
+        height, velocity = (float(x) for x in first)
+        self.drop = height - radius + velocity**2 / (2 * gravity)
+        self.since = -velocity / gravity
+
+    @classmethod
+    def of(cls, case: Case, rows: Array, axis: int, stride: int) -> Self | None:
+        """The ball of a case; None without a theory of its motion.
+
+        It has to fly below the other plate, and its flights must not have become shorter than the
+        contact time before one began to look.
+        """
+        section, given = case.spheres, case.spheres.instant_collision
+        if given is None or given.constant_restitution is None:
+            return None
+        if case.particles != 1 or section.energy_source or len(case.walls) != 1:
+            return None
+        gravity, plates = float(section.gravity[axis]), case.walls[0]
+        floor = plates.lower if gravity < 0 else plates.upper
+        contact, e = floor.contact, given.constant_restitution
+        if contact is not None:
+            e = e if contact.restitution is None else contact.restitution
+            if contact.amplitude or contact.temperature is not None:
+                return None
+        if floor.rule == "diffuse" or stride > 1 or not len(rows) or e == 0:
+            return None
+        radius = 0.5 * section.kinds[0].diameter * section.scale(case.box)
+        ball = cls(radius, abs(gravity), (e, given.contact_time), rows[0])
+        flight = math.sqrt(8 * max(ball.drop, 0.0) / ball.gravity)
+        early = ball.since != 0 and flight <= ball.contact_time
+        below = 0 < ball.drop < case.box.size[axis] - 2 * radius
+        return ball if below and not early else None
+
+    def height(self, since: Any) -> Any:
+        """Heights of its centre, so long after one began to look."""
+        return self.radius + theory.bounce_path(since + self.since, *self._flights())
+
+    def top(self, since: Any) -> Any:
+        """How high above the floor it flies, or has flown, between two bounces."""
+        lossy = theory.lossy_bounces(since + self.since, *self._flights())
+        return self.drop * self.restitution ** (2.0 * lossy)
+
+    def _flights(self) -> tuple[float, float, float, float]:
+        return self.drop, self.gravity, self.restitution, self.contact_time
 
 
 @accumulator_of(HeightInTime)
@@ -78,56 +129,3 @@ class HeightInTimeAccumulator(Samples):
         reached = height - ball.radius + velocity**2 / (2 * abs(self.gravity))
         what = "height above the floor that it still reaches"
         yield Comparison(what, reached, nan, ball.top(since), "a")
-
-
-class Ball:
-    """One hard sphere that falls from rest on a floor, or would have fallen from there.
-
-    since: time since it was at rest, when one began to look.
-    """
-
-    def __init__(self, radius: float, gravity: float, rule: tuple[float, float], first: Array):
-        self.radius, self.gravity, (self.restitution, self.contact_time) = radius, gravity, rule
-        height, velocity = (float(x) for x in first)
-        self.drop = height - radius + velocity**2 / (2 * gravity)
-        self.since = -velocity / gravity
-
-    @classmethod
-    def of(cls, case: Case, rows: Array, axis: int, stride: int) -> Ball | None:
-        """The ball of a case; None without a theory of its motion.
-
-        It has to fly below the other plate, and its flights must not have become shorter than the
-        contact time before one began to look.
-        """
-        section, given = case.spheres, case.spheres.instant_collision
-        if given is None or given.constant_restitution is None:
-            return None
-        if case.particles != 1 or section.energy_source or len(case.walls) != 1:
-            return None
-        gravity, plates = float(section.gravity[axis]), case.walls[0]
-        floor = plates.lower if gravity < 0 else plates.upper
-        contact, e = floor.contact, given.constant_restitution
-        if contact is not None:
-            e = e if contact.restitution is None else contact.restitution
-            if contact.amplitude or contact.temperature is not None:
-                return None
-        if floor.rule == "diffuse" or stride > 1 or not len(rows) or e == 0:
-            return None
-        radius = 0.5 * section.kinds[0].diameter * section.scale(case.box)
-        ball = cls(radius, abs(gravity), (e, given.contact_time), rows[0])
-        flight = math.sqrt(8 * max(ball.drop, 0.0) / ball.gravity)
-        early = ball.since != 0 and flight <= ball.contact_time
-        below = 0 < ball.drop < case.box.size[axis] - 2 * radius
-        return ball if below and not early else None
-
-    def height(self, since: Any) -> Any:
-        """Heights of its centre, so long after one began to look."""
-        return self.radius + theory.bounce_path(since + self.since, *self._flights())
-
-    def top(self, since: Any) -> Any:
-        """How high above the floor it flies, or has flown, between two bounces."""
-        lossy = theory.lossy_bounces(since + self.since, *self._flights())
-        return self.drop * self.restitution ** (2.0 * lossy)
-
-    def _flights(self) -> tuple[float, float, float, float]:
-        return self.drop, self.gravity, self.restitution, self.contact_time

@@ -20,7 +20,7 @@ STILL = 1e-3  # of the weight that their momentum may grow by in a unit of time
 
 
 def surface_names(case: Case) -> tuple[str, ...]:
-    """What surfaces are called, wall by wall."""
+    """Names of surfaces, wall by wall."""
     names = []
     for i, wall in enumerate(case.walls):
         name, keys = wall.name or f"{type(wall).__name__.lower()}-{i + 1}", wall.surfaces()

@@ -1,10 +1,8 @@
 """How long hard spheres fly from one collision to the next."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +83,7 @@ class FreeTimesAccumulator(BlockAccumulator):
         self.blocks.add([*(now - self.before), root])
         self.before = now
 
-    def pool(self, other: FreeTimesAccumulator) -> None:
+    def pool(self, other: Self) -> None:
         super().pool(other)
         self.edges = np.maximum(self.edges, other.edges)  # zero before the first sample
 
