@@ -6,11 +6,10 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
-from mesokit.method.spheres.common.expected.enskog import fluid_note, speed_factor
+from mesokit.method.spheres.common.expected.enskog import compressibility, equal_hard, speed_factor
 from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.engine import CollidingSpheres
 from mesokit.seam.estimate import of_mean
@@ -65,17 +64,15 @@ class EquationOfStateAccumulator(BlockAccumulator):
     def result(self) -> Result:
         """Z by the virial and, of equal hard spheres, by the rate of collisions."""
         pressures, rate = self.measured()
-        expected, law = self.expected()
+        expected, law, note = compressibility(self.case)
         names = ["virial", "collision rate"][: len(pressures)]
-        hard = self.case.spheres.collision.hard
-        note = (fluid_note(self.case) or self._note_of_few(expected)) if hard else ""
         if self.blocks.count and rate[0] == 0:
             note = "undetermined: no collision was seen"
 
         def comparisons() -> Iterator[Comparison]:
             for name, found in zip(names, pressures, strict=True):
                 yield Comparison(f"Z by the {name}", *found, expected, "", note)
-            yield Comparison("collision rate", *rate, self.expected_rate(), "1/tau", note)
+            yield Comparison("collision rate", *rate, self.expected_rate(expected), "1/tau", note)
 
         values, errors = np.transpose(pressures)
         return self.report(
@@ -90,7 +87,7 @@ class EquationOfStateAccumulator(BlockAccumulator):
     def measured(self) -> tuple[list[tuple[float, float]], tuple[float, float]]:
         """Z with its error by each way, and the collisions of a sphere per time."""
         case, n, d = self.case, self.case.particles, self.case.box.dimension
-        undetermined = [(math.nan, math.nan)] * (2 if self.equal else 1)
+        undetermined = [(math.nan, math.nan)] * (2 if equal_hard(self.case) else 1)
         if not self.blocks.count:
             return undetermined, (math.nan, math.nan)
         found = of_mean(self.blocks)
@@ -100,7 +97,7 @@ class EquationOfStateAccumulator(BlockAccumulator):
         kT = twice / (d * (n - 1))  # momentum is zero
         gradient = np.array([1 / (d * n * kT), 0.0, -virial / (d * n * kT * twice)])
         pressures = [found.scalar(1 + virial / (d * n * kT), gradient)]
-        if self.equal:
+        if len(undetermined) == 2:
             kind, scale = case.spheres.kinds[0], case.spheres.scale(case.box)
             factor = kind.diameter * scale * math.sqrt(math.pi * kind.mean_mass(d) / kT)
             factor *= 2 / n / (2 * d) / speed_factor(case)
@@ -108,51 +105,13 @@ class EquationOfStateAccumulator(BlockAccumulator):
             pressures.append(found.scalar(1 + factor * events, gradient))
         return pressures, found.scalar(2 * events / n, np.array([0.0, 2 / n, 0.0]))
 
-    @property
-    def equal(self) -> bool:
-        """Whether all are hard spheres of one size, whose collision rate says what Z is."""
-        kinds, collision = self.case.spheres.kinds, self.case.spheres.collision
-        return len(kinds) == 1 and kinds[0].spread == 0 and collision.hard
-
-    def expected(self) -> tuple[float, str]:
-        """Z of this box of hard spheres in equilibrium, and whose law that is; nan of others."""
-        section, box = self.case.spheres, self.case.box
-        if not section.collision.hard:
-            return math.nan, ""
-        z = theory.compressibility_of_few(self._law, section.fraction(box), self.case.particles)
-        if self.equal:
-            return z, "virial series" if box.dimension == 2 else "Kolafa"
-        plane, space = "Santos, Yuste, Lopez de Haro", "Boublik, Mansoori et al."
-        return z, plane if box.dimension == 2 else space
-
-    def _law(self, phi: float) -> float:
-        """Z of many such spheres at a packing fraction."""
-        section, box = self.case.spheres, self.case.box
-        d = box.dimension
-        if self.equal:
-            return theory.compressibility(phi, d)
-        counts, scale = section.counts(box), section.scale(box)
-        kinds = list(zip(counts, section.kinds, strict=True))
-        moments = [
-            sum(n * kind.mean_power(p) * scale**p for n, kind in kinds) / sum(counts)
-            for p in range(1, d + 1)
-        ]
-        return theory.mixture_compressibility(phi, moments, d)
-
-    def _note_of_few(self, expected: float) -> str:
-        """That the box is small, where that changes the excess of Z by more than 0.2 %."""
-        many = self._law(self.case.spheres.fraction(self.case.box))
-        if abs(many - expected) <= 0.002 * abs(many - 1):
-            return ""
-        return f"approximate: {self.case.particles} spheres; {many:.4g} is the law of many"
-
-    def expected_rate(self) -> float:
-        """Collisions of a sphere per time that belong to that Z, nan for mixtures."""
-        if not self.equal:
+    def expected_rate(self, z: float) -> float:
+        """Collisions of a sphere per time that belong to Z, nan for mixtures."""
+        if not equal_hard(self.case):
             return math.nan
         case, d = self.case, self.case.box.dimension
         kind = case.spheres.kinds[0]
         diameter = kind.diameter * case.spheres.scale(case.box)
         kT = self.blocks.mean()[2] / (d * (case.particles - 1))
-        excess = (self.expected()[0] - 1) * speed_factor(case)
+        excess = (z - 1) * speed_factor(case)
         return float(2 * d * excess / (diameter * math.sqrt(math.pi * kind.mean_mass(d) / kT)))
