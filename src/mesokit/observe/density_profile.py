@@ -27,7 +27,7 @@ class DensityInSlices(Protocol):
     ids: NDArray[np.int64] | None
 
     def sums(self, profile: ProfileAccumulator, engine: RunningFluid | RunningSpheres) -> Array:
-        """Those numbers (width, bins) at this moment."""
+        """The numbers (width, bins) at this moment."""
 
     def compared(self, profile: ProfileAccumulator, density: Estimate, sums: Array) -> Compared:
         """The density (bins,) beside theory, by the means (width, bins) of sums per volume."""

@@ -78,7 +78,7 @@ class FlowFrames(Field):
 
 
 def _parts(case: Case) -> list[str]:
-    """What is kept of each bin. Velocities are weighted by mass, which a mixture has apart."""
+    """Numbers of each bin. Velocities are weighted by mass, which a mixture has apart."""
     mixture = case.fluid.mixed
     velocities = [f"velocity_{axis}" for axis in AXES[: case.box.dimension]]
     return ["density", *["mass_density"] * mixture, *velocities]
@@ -195,7 +195,7 @@ def _stack(arrays: list[NDArray[Any]], shape: tuple[int, ...]) -> NDArray[np.flo
 
 
 def weights(result: Result) -> Array:
-    """What the velocities of flow-frames are weighted with: mass in each bin (frames, *bins)."""
+    """Weights of the velocities of flow-frames: mass in each bin (frames, *bins)."""
     parts = list(result.x["component"])
     kept = parts.index("mass_density") if "mass_density" in parts else parts.index("density")
     return result.value[..., kept] * result.extra["samples"][:, None, None]

@@ -1,4 +1,4 @@
-"""How far disks are ordered as a triangular lattice is."""
+"""Order of disks, compared with a triangular lattice."""
 
 from typing import ClassVar, Literal
 

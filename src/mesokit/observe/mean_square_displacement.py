@@ -59,7 +59,7 @@ class Displacement(Protocol):
         return 0.0
 
     def grows(self) -> bool:
-        """Whether D grows with the lag: in 2D where all momentum is kept."""
+        """True if D grows with the lag: in 2D where all momentum is kept."""
         return False
 
     def level_from(self) -> float:
@@ -67,7 +67,7 @@ class Displacement(Protocol):
         return math.inf
 
     def legend(self) -> str:
-        """What the theory is called in a figure."""
+        """Name of the theory in a figure."""
         return ""
 
 

@@ -282,8 +282,8 @@ class RadialDistributionAccumulator(BlockAccumulator):
             yield Comparison("g at contact", *at_contact, self.theory.value, "", self.theory.note)
 
     def times(self) -> float:
-        """How often in a run two of them diffuse over the reach, after which their distance is
-        forgotten: R^2/(2 d D), D the sum of their coefficients; nan where these are not known."""
+        """Number of times in a run that two of them diffuse over the reach and forget their
+        distance: R^2/(2 d D), D the sum of their coefficients; nan where these are not known."""
         first, second = (
             [self.theory.diffusion(group) for group in groups]
             for groups in (self.first, self.second)

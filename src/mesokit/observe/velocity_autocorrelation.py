@@ -34,7 +34,7 @@ class VelocityMemory(Protocol):
         return None
 
     def legend(self) -> str:
-        """What the theory is called in a figure."""
+        """Name of the theory in a figure."""
         return ""
 
     def level(self, error: float, runs: int) -> tuple[float, float] | None:
@@ -47,7 +47,7 @@ class VelocityMemory(Protocol):
         return error
 
     def share(self, every: int) -> str | None:
-        """What to say of the share that is left after a lag; None if it is not told."""
+        """Note on the share that is left after a lag; None if that is not reported."""
         return None
 
     def diffusion(self, every: int) -> tuple[float, str] | None:

@@ -1,4 +1,4 @@
-"""How velocities are distributed: a component and the speed, beside Maxwell."""
+"""Distribution of velocities: a component and the speed, beside Maxwell."""
 
 import math
 from dataclasses import replace
@@ -48,10 +48,10 @@ class Velocities(Protocol):
         """By how much kT may be off for good, relative, over so many runs."""
 
     def legend(self) -> str:
-        """What the theory is called in a figure."""
+        """Name of the theory in a figure."""
 
     def note(self, classes: int) -> str:
-        """What to say of a chi-square over so many classes."""
+        """Note on a chi-square over so many classes."""
 
 
 @component

@@ -29,7 +29,7 @@ class FlowInSlices(Protocol):
     ids: NDArray[np.int64] | None
 
     def warnings(self) -> Iterator[str]:
-        """What one should know before it is measured."""
+        """Warnings before it is measured."""
 
     def compared(self, profile: ProfileAccumulator, velocity: Estimate, sums: Array) -> Compared:
         """The velocity (bins,) beside the steady flow, by the sums (2, bins) of momentum and

@@ -69,7 +69,7 @@ class Brownians:
         return self.places[chosen] + (self.counts[chosen] * self.box if unwrapped else 0.0)
 
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
-        """How many boxes away the particles are, (n, d)."""
+        """Image counts (n, d) of the particles."""
         return self.counts[slice(None) if ids is None else ids].copy()
 
     def state(self) -> State:

@@ -31,7 +31,7 @@ class Brownian:
         return self
 
     def number(self, box: Box) -> int:
-        """How many particles there are."""
+        """Number of particles."""
         return round(self.density * box.volume)
 
 

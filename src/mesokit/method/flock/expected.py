@@ -19,7 +19,7 @@ DISORDERED = 1.5  # times the order of directions at random, up to which a flock
 
 
 class Displacement(mean_square_displacement.Displacement):
-    """That of one bird alone is a walk whose steps remember; of others there is no theory.
+    """Displacement of a lone bird, a persistent walk; of others there is no theory.
 
     Raises CaseError for molecules and kinds, of which there are none, and without an axis to count.
     """

@@ -78,7 +78,7 @@ class Flock:
         return self
 
     def birds(self, box: Box) -> int:
-        """How many birds there are."""
+        """Number of birds."""
         if self.number is not None:
             return self.number
         return round((DENSITY if self.density is None else self.density) * box.volume)

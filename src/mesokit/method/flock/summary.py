@@ -1,4 +1,4 @@
-"""What follows from a case of a flock: derived numbers, cost, and warnings."""
+"""Derived numbers of a case of a flock, cost, and warnings."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Whether a flow had built up when samples were taken: else its mean is not that of theory."""
+"""Caveats of flows that had not built up when samples were taken: theory is of steady flow."""
 
 import copy
 import dataclasses

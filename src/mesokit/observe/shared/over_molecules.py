@@ -65,7 +65,7 @@ class OwnMeans(BlockAccumulator):
 
     @property
     def number(self) -> int:
-        """How many groups there are, those of pooled runs included."""
+        """Number of groups, those of pooled runs included."""
         return len(self.sums) + sum(map(len, self._others))
 
     def error(self, combine: Array | None = None) -> Array:
@@ -144,5 +144,5 @@ class MeansOverMolecules(BlockAccumulator):
         return float(self.mean(combine)[0]), float(self.error(combine)[0])
 
     def caution(self) -> str:
-        """What to say of error bars that blocks of time alone give."""
+        """Note on error bars that blocks of time alone give."""
         return self.own.caution()

@@ -1,4 +1,4 @@
-"""Whether a run is too short for its blocks of time: then error bars are lower bounds."""
+"""Caveats of runs that are too short for their blocks of time: error bars are lower bounds."""
 
 import dataclasses
 from collections.abc import Callable
@@ -81,7 +81,7 @@ def of_relaxations(times: float, runs: int = 1, of: str = "relaxation times") ->
 
 
 def unresolved(blocks: Blocks) -> bool:
-    """Whether most of its means have few independent pieces.
+    """True if most of the means have few independent pieces.
 
     >>> noise = np.random.default_rng(1).normal(size=1024)
     >>> series = Blocks(), Blocks()

@@ -1,4 +1,4 @@
-"""How much the number of birds in a part of the box fluctuates."""
+"""Fluctuations of the number of birds in a part of the box."""
 
 import math
 from collections.abc import Mapping

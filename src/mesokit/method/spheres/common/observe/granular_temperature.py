@@ -141,7 +141,7 @@ class GranularTemperatureAccumulator(Samples):
         return of_runs
 
     def note(self) -> str:
-        """What the law leaves out."""
+        """Note on what the law neglects."""
         if self.law == "Haff":
             chaos = "approximate: molecular chaos, without clusters or pairs that meet again"
             single = np.isnan(self.series.error()).all()

@@ -75,7 +75,7 @@ class Ball:
         return self.radius + theory.bounce_path(since + self.since, *self._flights())
 
     def top(self, since: Any) -> Any:
-        """How high above the floor it flies, or has flown, between two bounces."""
+        """Height above the floor of its flight between two bounces."""
         lossy = theory.lossy_bounces(since + self.since, *self._flights())
         return self.drop * self.restitution ** (2.0 * lossy)
 

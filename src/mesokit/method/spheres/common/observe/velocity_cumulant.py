@@ -1,4 +1,4 @@
-"""How far the velocities of spheres are from Maxwell's: the fourth cumulant."""
+"""Fourth cumulant: deviation of the velocities of spheres from Maxwell's distribution."""
 
 from typing import ClassVar, Literal
 

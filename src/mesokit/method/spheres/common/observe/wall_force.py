@@ -78,7 +78,7 @@ class WallForceAccumulator(BlockAccumulator):
         )
 
     def steady(self, axis: int) -> bool:
-        """Whether the spheres gain no momentum along an axis, but for what is there by chance."""
+        """True if the spheres gain no momentum along an axis, but for chance."""
         found, section = of_mean(self.blocks), self.case.spheres
         mass, gained = self.taken, self.taken + 1 + axis
         g = section.gravity[axis] if section.gravity else 0.0

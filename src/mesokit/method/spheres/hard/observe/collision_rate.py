@@ -1,4 +1,4 @@
-"""How often hard spheres collide."""
+"""Collision rate of hard spheres."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""How long hard spheres fly from one collision to the next."""
+"""Times of flight of hard spheres from one collision to the next."""
 
 import math
 from collections.abc import Iterator

@@ -106,7 +106,7 @@ class ContactStressAccumulator(BlockAccumulator):
             yield Comparison("flux along gravity over weight", ratio, error, 1.0, "", note)
 
     def falling(self, ratio: float) -> str:
-        """That samples began while spheres fell, where the flux is not yet near the weight."""
+        """A note if samples began while spheres fell, and the flux is not yet near the weight."""
         assert self.floor is not None
         k, g, _ = self.floor
         step, had = method_of(self.case).timestep(self.case), self.case.run.warmup
