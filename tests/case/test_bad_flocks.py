@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mesokit import Box, Case, CaseError, Run, Simulation
-from mesokit.method.flock import Flock
+from mesokit import Box, Case, CaseError, Flock, Run, Simulation
 from tests.helpers.refusals import changed, has_words, refused
 
 GOOD = """

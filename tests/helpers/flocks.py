@@ -1,7 +1,6 @@
 """Flocks for the tests of their laws."""
 
-from mesokit import Box, Case, Disk, Plates, Run, Surface
-from mesokit.method.flock import Flock
+from mesokit import Box, Case, Disk, Flock, Plates, Run, Surface
 
 SLIP = Surface(rule="slip")
 ANY_WALLS = [Plates("y", lower=SLIP, upper=SLIP), Disk(centre=(10, 9), radius=3.3)]

@@ -8,20 +8,18 @@ from scipy import stats
 from scipy.spatial import cKDTree
 
 from mesokit import (
-    Case,
-    MeanSquareDisplacement,
-    Plates,
-    Simulation,
-    Surface,
-    theory,
-)
-from mesokit.method.flock import (
     AngularNoise,
+    Case,
     Cohesion,
     Flock,
+    MeanSquareDisplacement,
     NumberFluctuations,
+    Plates,
     PolarOrder,
+    Simulation,
+    Surface,
     VectorialNoise,
+    theory,
 )
 from mesokit.method.flock.engine.flocks import Flocks
 from mesokit.method.flock.engine.memory import CHUNK

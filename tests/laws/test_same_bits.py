@@ -16,12 +16,15 @@ from mesokit import (
     AT,
     FENE,
     WCA,
+    AngularNoise,
     Bending,
     Box,
     Capsule,
     Case,
+    Cohesion,
     Disk,
     EquationOfState,
+    Flock,
     Fluid,
     Forces,
     HardCollision,
@@ -31,6 +34,7 @@ from mesokit import (
     MeanSquareDisplacement,
     Molecule,
     Plates,
+    PolarOrder,
     Polymer,
     RandomStart,
     Run,
@@ -43,10 +47,10 @@ from mesokit import (
     Surface,
     Trajectory,
     Uniform,
+    VectorialNoise,
     Viscoelastic,
 )  # fmt: skip
 from mesokit.method.brownian import Brownian
-from mesokit.method.flock import AngularNoise, Cohesion, Flock, PolarOrder, VectorialNoise
 from mesokit.method.flock.engine import flocks
 from mesokit.method.flock.engine.flocks import Flocks
 from mesokit.method.mpcd.engine.cpu.engine import CPU

@@ -6,14 +6,20 @@ import pytest
 from matplotlib.quiver import Quiver
 
 import mesokit
-from mesokit import Box, CaseError, Disk, Run, RunError, Simulation, Trajectory
-from mesokit.method.flock import (
+from mesokit import (
     AngularNoise,
+    Box,
+    CaseError,
     ClusterSizes,
     DensityBands,
+    Disk,
     Flock,
     NumberFluctuations,
     PolarOrder,
+    Run,
+    RunError,
+    Simulation,
+    Trajectory,
 )
 from mesokit.report.flow.birds import colours
 

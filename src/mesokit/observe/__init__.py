@@ -1,4 +1,4 @@
-"""What particles of more than one method have: observables, a file each."""
+"""Observables of particles that more than one method has, a file each."""
 
 from mesokit.case.registry import parts_in
 from mesokit.seam.observable import Accumulator, Observable

@@ -1,10 +1,8 @@
 """Pictures of the flow in time: density and velocity on a grid, window after window."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +14,7 @@ from mesokit.errors import CaseError
 from mesokit.observe.shared.field import Array, Field
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import of_ratio
-from mesokit.seam.observable import State, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, State, accumulator_of
 from mesokit.seam.result import Result
 from mesokit.statistics import spread_ids
 
@@ -39,6 +37,7 @@ class FlowFrames(Field):
     """
 
     quantity: Literal["flow-frames"] = tag("flow-frames")
+    drawing, value_label = "frames", "flow"
     window: int = param(100, doc="steps that one frame averages over", unit="steps", ge=1)
     particles: int = param(2000, doc="particles whose positions are kept", ge=0)
 
@@ -79,24 +78,24 @@ class FlowFrames(Field):
 
 
 def _parts(case: Case) -> list[str]:
-    """What is kept of each bin. Velocities are weighted by mass, which a mixture has apart."""
+    """Numbers of each bin. Velocities are weighted by mass, which a mixture has apart."""
     mixture = case.fluid.mixed
     velocities = [f"velocity_{axis}" for axis in AXES[: case.box.dimension]]
     return ["density", *["mass_density"] * mixture, *velocities]
 
 
 @accumulator_of(FlowFrames)
-class FlowFramesAccumulator:
+class FlowFramesAccumulator(BlockAccumulator):
     """All frames so far, and the sums of the one that is being filled."""
 
-    def __init__(self, observable: FlowFrames, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
-        self.axes = tuple(case.box.index(axis) for axis in observable.axes)
-        lengths = [case.box.size[axis] for axis in self.axes]
-        self.bins = tuple(length * observable.bins_per_cell for length in lengths)
-        self.parts = _parts(case)
-        self.ids = spread_ids(observable.particles, case.particles)
-        self.bin_volume = np.prod(case.box.size) / np.prod(self.bins)
+    def prepare(self) -> None:
+        observable, box = self.observable, self.case.box
+        self.axes = tuple(box.index(axis) for axis in observable.axes)
+        self.bins = tuple(box.size[axis] * observable.bins_per_cell for axis in self.axes)
+        self.parts = _parts(self.case)
+        self.ids = spread_ids(observable.particles, self.case.particles)
+        self.bin_volume = np.prod(box.size) / np.prod(self.bins)
+        self.per_frame = observable.window // observable.every  # samples of a whole frame
         self.frames: list[NDArray[np.float32]] = []
         self.positions: list[NDArray[np.float32]] = []
         self.times: list[float] = []
@@ -119,11 +118,6 @@ class FlowFramesAccumulator:
             self.frames.append(self._frame())
             self.times.append(self.time / self.samples)
             self._begin()
-
-    @property
-    def per_frame(self) -> int:
-        """Samples of a whole frame."""
-        return self.observable.window // self.observable.every
 
     def _frame(self) -> NDArray[np.float32]:
         """Means of the frame that is being filled, (parts, *bins); nan for no velocity."""
@@ -150,7 +144,7 @@ class FlowFramesAccumulator:
         self.sums = np.array(state["sums"])
         self.samples, self.time = int(state["samples"]), float(state["time"])
 
-    def pool(self, other: FlowFramesAccumulator) -> None:
+    def pool(self, other: Self) -> None:
         """Take in the samples of an independent run of the same case: only to read.
 
         Windows that both have seen whole become their means; particles stay those of the first.
@@ -177,35 +171,23 @@ class FlowFramesAccumulator:
             frames, times = [*frames, self._frame()], [*times, self.time / self.samples]
             samples.append(self.samples)
         value = np.moveaxis(_stack(frames, (len(self.parts), *self.bins)), 1, -1)
-        first, second = self.observable.axes
-        x = {"time": np.array(times), first: self._centres(0), second: self._centres(1)}
-        return Result(
-            quantity="flow-frames",
-            drawing="frames",
-            name=self.name,
-            x=x | {"component": np.array(self.parts)},
-            value=value.astype(float),
-            error=np.broadcast_to(np.nan, value.shape),
-            label="flow",
-            units={"value": "", "time": "tau", first: "a", second: "a"} | self._units(),
+        scale, density = self.observable.bins_per_cell, self.case.box.density_unit
+        bins = zip(self.observable.axes, self.bins, strict=True)
+        centres = {axis: (np.arange(n) + 0.5) / scale for axis, n in bins}
+        units = {"time": "tau"} | dict.fromkeys(centres, "a") | {"density": density}
+        units["mass_density"] = density.replace("1", "m")
+        units |= {name: "a/tau" for name in self.parts if name.startswith("velocity")}
+        positions = self.positions[: len(frames)]
+        return self.report(
+            {"time": times} | centres | {"component": self.parts},
+            value.astype(float),
+            units=units,
             samples=sum(samples),
             extra={
                 "samples": np.array(samples, np.int64),
-                "positions": _stack(
-                    self.positions[: len(frames)], (len(self.ids), self.case.box.dimension)
-                ),
+                "positions": _stack(positions, (len(self.ids), self.case.box.dimension)),
             },
         )
-
-    def _centres(self, axis: int) -> Array:
-        return (np.arange(self.bins[axis]) + 0.5) / self.observable.bins_per_cell
-
-    def _units(self) -> dict[str, str]:
-        return {
-            "density": self.case.box.density_unit,
-            "mass_density": self.case.box.density_unit.replace("1", "m"),
-            **{name: "a/tau" for name in self.parts if name.startswith("velocity")},
-        }
 
 
 def _stack(arrays: list[NDArray[Any]], shape: tuple[int, ...]) -> NDArray[np.float32]:
@@ -213,7 +195,7 @@ def _stack(arrays: list[NDArray[Any]], shape: tuple[int, ...]) -> NDArray[np.flo
 
 
 def weights(result: Result) -> Array:
-    """What the velocities of flow-frames are weighted with: mass in each bin (frames, *bins)."""
+    """Weights of the velocities of flow-frames: mass in each bin (frames, *bins)."""
     parts = list(result.x["component"])
     kept = parts.index("mass_density") if "mass_density" in parts else parts.index("density")
     return result.value[..., kept] * result.extra["samples"][:, None, None]

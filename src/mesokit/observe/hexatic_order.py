@@ -1,4 +1,4 @@
-"""How far disks are ordered as a triangular lattice is."""
+"""Order of disks, compared with a triangular lattice."""
 
 from typing import ClassVar, Literal
 
@@ -24,6 +24,8 @@ class HexaticOrder(Observable):
 
     quantity: Literal["hexatic-order"] = tag("hexatic-order")
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    value_label = r"hexatic order $|\psi_6|$"
+    units: ClassVar[dict[str, str]] = {"order": ""}
     of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
@@ -41,32 +43,17 @@ class HexaticOrder(Observable):
 class HexaticOrderAccumulator(BlockAccumulator):
     """Block averages of both."""
 
-    def __init__(self, observable: HexaticOrder, case: Case) -> None:
-        self.name, self.blocks = observable.label, Blocks((2,))
+    def prepare(self) -> None:
+        self.blocks = Blocks((2,))
 
     def observe(self, spheres: RunningSpheres) -> None:
         psi = psi_6(spheres.positions(), spheres.box)
         self.blocks.add([np.abs(psi).mean(), abs(psi.mean())])
 
     def result(self) -> Result:
-        """Both numbers."""
-        value, error = self.blocks.mean(), self.blocks.error()
-        listed = [
-            Comparison(f"{name} psi_6", float(value[k]), float(error[k]))
-            for k, name in enumerate(("local", "global"))
-        ]
-        return Result(
-            quantity="hexatic-order",
-            drawing="curve",
-            name=self.name,
-            x={"order": np.array(["local", "global"])},
-            value=value,
-            error=error,
-            label=r"hexatic order $|\psi_6|$",
-            units={"value": "", "order": ""},
-            comparisons=tuple(listed) if self.blocks.count else (),
-            samples=self.blocks.count,
-        )
+        names, value, error = ("local", "global"), self.blocks.mean(), self.blocks.error()
+        found = (Comparison(f"{name} psi_6", value[k], error[k]) for k, name in enumerate(names))
+        return self.report({"order": names}, self.blocks, found)
 
 
 def psi_6(places: Array, box: Array) -> NDArray[np.complex128]:

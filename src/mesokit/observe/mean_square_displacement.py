@@ -1,7 +1,5 @@
 """Mean square displacement of particles or of molecules, and their diffusion coefficient."""
 
-from __future__ import annotations
-
 import math
 from typing import ClassVar, Literal, NamedTuple, Protocol
 
@@ -9,16 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
-from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either
 from mesokit.observe.shared.fitted import fitted_number
+from mesokit.observe.shared.of_method import OfMethod
 from mesokit.observe.shared.origins import GROUPS, Origins
 from mesokit.seam.engine import Particles
 from mesokit.seam.estimate import Estimate, fit
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
+from mesokit.seam.result import Array, Comparison, Result, joined
 from mesokit.statistics import spread_ids
 
 Integers = NDArray[np.int64]
@@ -29,7 +27,7 @@ CHANGES = 2.0  # standard errors of a change of the slope that counts where theo
 
 
 class Displacement(Protocol):
-    """What a method says of the displacement of its particles in a case.
+    """Theory of the displacement of particles by a method.
 
     It is made of a case and the observable, and raises CaseError where there is nothing to follow.
     `axes` are those that count; `length` particles make a molecule, of which there are `number`.
@@ -61,7 +59,7 @@ class Displacement(Protocol):
         return 0.0
 
     def grows(self) -> bool:
-        """Whether D grows with the lag: in 2D where all momentum is kept."""
+        """True if D grows with the lag: in 2D where all momentum is kept."""
         return False
 
     def level_from(self) -> float:
@@ -69,12 +67,12 @@ class Displacement(Protocol):
         return math.inf
 
     def legend(self) -> str:
-        """What the theory is called in a figure."""
+        """Name of the theory in a figure."""
         return ""
 
 
 @component
-class MeanSquareDisplacement(Observable):
+class MeanSquareDisplacement(OfMethod):
     """Mean square displacement at lags from one sample to `max_lag`, about equally spaced in log.
 
     Axes along which the fluid flows or that a wall closes are left out unless given. In a fluid of
@@ -82,6 +80,9 @@ class MeanSquareDisplacement(Observable):
     """
 
     quantity: Literal["mean-square-displacement"] = tag("mean-square-displacement")
+    methods: ClassVar[tuple[str, ...]] = ()  # those that offer it
+    drawing = "displacement"
+    units: ClassVar[dict[str, str]] = {"value": "a^2", "time": "tau"}
     in_open_box: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
     of: Literal["particles", "beads", "centres"] = param(
@@ -98,126 +99,10 @@ class MeanSquareDisplacement(Observable):
         None, doc="axes that count (all without flow and walls unless said)", min_length=1
     )
 
-    def displacement(self, case: Case) -> Displacement:
-        """What the method of a case says of it. Raises CaseError if there is nothing to follow."""
-        found: Displacement = method_of(case).expected["mean-square-displacement"](case, self)
-        return found
-
-    def check(self, case: Case) -> None:
-        """Raise CaseError without an axis or a molecule to follow."""
-        self.displacement(case)
-
 
 def _square_distance(old: Array, new: Array) -> Array:
     difference = new - old
     return np.einsum("ij,ij->i", difference, difference)
-
-
-@accumulator_of(MeanSquareDisplacement)
-class MeanSquareDisplacementAccumulator(BlockAccumulator):
-    """Unwrapped positions at many origins."""
-
-    memory: ClassVar[tuple[str, ...]] = ("origins",)
-
-    def __init__(self, observable: MeanSquareDisplacement, case: Case) -> None:
-        self.observable, self.name = observable, observable.label
-        self.theory = observable.displacement(case)
-        self.axes, self.timestep = self.theory.axes, method_of(case).timestep(case)
-        max_lag = max(1, observable.max_lag // observable.every)
-        length, number = self.theory.length, self.theory.number
-        if length == 1:
-            self.ids = self.theory.beads(observable.particles).ravel()
-            self.origins = Origins(len(self.ids), len(self.axes), max_lag)
-            return
-        wanted = observable.particles if self.centres else -(-observable.particles // length)
-        followed = min(wanted, number)
-        followed -= followed % GROUPS if followed > GROUPS else 0
-        # bead after bead, so that one molecule is in one group: its beads are not independent
-        self.ids = self.theory.beads(followed).T.ravel()
-        rows = followed if self.centres else len(self.ids)
-        self.origins = Origins(rows, len(self.axes), max_lag, min(GROUPS, followed))
-
-    @property
-    def centres(self) -> bool:
-        """Whether centres of mass are followed."""
-        return self.observable.of == "centres"
-
-    def observe(self, engine: Particles) -> None:
-        position = engine.positions(self.ids, unwrapped=True)[:, list(self.axes)]
-        if self.centres:
-            position = position.reshape(self.theory.length, -1, len(self.axes)).mean(axis=0)
-        self.origins.add(position, _square_distance)
-
-    def result(self) -> Result:
-        """The curve and its slope where it is a straight line."""
-        steps = self.origins.sampled() * self.observable.every
-        moved = self.origins.estimate()
-        time = steps * self.timestep
-        curve = None
-        comparisons: list[Comparison] = []
-        slope = late_slope(time, moved, self.theory.diffusive_from(), self.theory.grows())
-        if slope is not None:
-            curve, comparisons = slope.line, [self.diffusion(slope)]
-        elif len(time) > 1 and math.isfinite(first := self.theory.diffusive_from()):
-            why = f"undetermined: fewer than three lags from {first:.3g} to {time[-1]:.3g} tau"
-            known = self.theory.coefficient()[0]
-            what, unit = "diffusion coefficient", "a^2/tau"
-            comparisons = [Comparison(what, math.nan, math.nan, known, unit, why)]
-        expected = self.theory.expected(steps)
-        level = time >= self.theory.level_from()
-        if level.any() and expected is not None:
-            mean = level / level.sum()
-            measured = moved.scalar(mean @ moved.value, mean)
-            what = "mean square displacement, levelled off"
-            comparisons.append(Comparison(what, *measured, expected[level].mean(), "a^2"))
-        elif np.isfinite(self.theory.level_from()) and len(steps) > 1:
-            comparisons.append(self.not_levelled(steps, moved))
-        return Result(
-            quantity="mean-square-displacement",
-            drawing="displacement",
-            name=self.name,
-            x={"time": time},
-            value=moved.value,
-            error=moved.error,
-            label="mean square displacement" + " of centres of mass" * self.centres,
-            units={"value": "a^2", "time": "tau"},
-            expected=expected,
-            fit=curve,
-            theory=self.theory.legend(),
-            comparisons=tuple(comparisons),
-            samples=self.origins.count,
-            extra={"components": "".join("xyz"[axis] for axis in self.axes)},
-        )
-
-    def not_levelled(self, steps: Integers, moved: Estimate) -> Comparison:
-        """The displacement at the longest lag, which is too short for the level of theory."""
-        last = np.zeros(len(steps))
-        last[-1] = 1.0
-        first = math.ceil(self.theory.level_from() / self.timestep)
-        note = (
-            f"theory knows the level, from lag {first} steps on; the longest here is {steps[-1]}: "
-            "a larger max_lag"
-        )
-        what = "mean square displacement at the longest lag"
-        return Comparison(what, *moved.scalar(last @ moved.value, last), math.nan, "a^2", note)
-
-    def diffusion(self, slope: Slope) -> Comparison:
-        """The diffusion coefficient beside theory, or why it is not known."""
-        scale = 1 / (2 * len(self.axes))
-        value, error = slope.value * scale, slope.error * scale
-        error = self.theory.with_start(error, value, self.origins.series)
-        expected, note = self.theory.coefficient()
-        what = "diffusion coefficient"
-        if slope.growth:
-            trend = "grows" if slope.growth > 0 else "falls"
-            short = not (slope.straight or self.theory.grows())
-            why = ": no straight line yet, a larger max_lag" if short else ""
-            decade = "error bar with its change in a decade of lags"
-            rest = note.removeprefix("approximate: ")
-            note = "; ".join(
-                filter(None, (f"approximate: {trend} with the lag{why}", decade, rest))
-            )
-        return fitted_number(what, value, error, expected, "a^2/tau", note)
 
 
 # A displacement bends from free flight to diffusion, and the fit must begin beyond. Fits over
@@ -265,8 +150,10 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     if use.sum() < FEWEST:
         return None
     basis = np.stack([np.ones_like(time), time], axis=1)
-    windows = [use & (time >= start) for start in _starts(time[use])]
-    fits = [fit(curve, basis, _weight(time, window)) for window in windows]
+    last, starts = time[use][-1], [float(time[use][0])]  # where windows of an octave or more begin
+    while 4 * starts[-1] <= last and (use & (time >= 2 * starts[-1])).sum() >= FEWEST:
+        starts.append(2 * starts[-1])
+    windows = [use & (time >= start) for start in starts]
     slopes = np.stack([_row(time, basis, window) for window in windows])
     value = slopes @ curve.value
     apart = slopes[:, None] - slopes[None]  # differences of any two
@@ -274,26 +161,23 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     off = abs(value[:, None] - value[None])
     agree = [bool((off[k, k + 1 :] <= AGREE * noise[k, k + 1 :]).all()) for k in range(len(value))]
     chosen = agree.index(True)  # of the last there is nothing to differ from
+    line = fit(curve, basis, _weight(time, windows[chosen])).value
     straight = len(value) == 1 or chosen < len(value) - 1
     errors = curve.linear(slopes).error
-    spread = _scatter(off[chosen, chosen:], noise[chosen, chosen:], errors[chosen:])
+    # mean square of what slopes differ by beyond noise, each weighing by its own error
+    weight, spread = 1 / errors[chosen:] ** 2, 0.0
+    if np.isfinite(weight).all():
+        beyond = off[chosen, chosen:] ** 2 - noise[chosen, chosen:] ** 2
+        spread = max(0.0, float((weight * beyond).sum() / weight.sum()))
     bend, unsure = _bend(time, curve, use if straight else windows[-2])
     growth = DECADE * bend if not straight or (grows and bend > CHANGES * unsure) else 0.0
     return Slope(
         float(value[chosen]),
         float(np.sqrt(errors[chosen] ** 2 + spread + growth**2)),
-        np.where(windows[chosen], basis @ fits[chosen].value, np.nan),
+        np.where(windows[chosen], basis @ line, np.nan),
         straight,
         growth,
     )
-
-
-def _starts(time: Array) -> list[float]:
-    """Where windows begin: at the first lag, then at twice the one before, an octave at least."""
-    starts = [float(time[0])]
-    while 4 * starts[-1] <= time[-1] and (time >= 2 * starts[-1]).sum() >= FEWEST:
-        starts.append(2 * starts[-1])
-    return starts
 
 
 def _weight(time: Array, window: NDArray[np.bool_]) -> Array:
@@ -305,14 +189,6 @@ def _row(time: Array, basis: Array, window: NDArray[np.bool_], coefficient: int 
     """The combination (n,) of the values that a coefficient of a fit is."""
     root = np.sqrt(_weight(time, window))[:, None]
     return np.asarray((np.linalg.pinv(basis * root) * root.T)[coefficient])
-
-
-def _scatter(off: Array, noise: Array, errors: Array) -> float:
-    """Mean square of what slopes differ by beyond noise, each weighing by its own error."""
-    weight = 1 / errors**2
-    if not np.isfinite(weight).all():
-        return 0.0
-    return max(0.0, float((weight * (off**2 - noise**2)).sum() / weight.sum()))
 
 
 def _bend(time: Array, curve: Estimate, use: NDArray[np.bool_]) -> tuple[float, float]:
@@ -327,3 +203,85 @@ def _bend(time: Array, curve: Estimate, use: NDArray[np.bool_]) -> tuple[float, 
     basis = np.stack([np.ones_like(t), t, t * np.log(np.where(t > 0, t, 1.0))], axis=1)
     row = _row(t, basis, use, 2) / time[use].max()
     return curve.scalar(row @ curve.value, row)
+
+
+@accumulator_of(MeanSquareDisplacement)
+class MeanSquareDisplacementAccumulator(BlockAccumulator):
+    """Unwrapped positions at many origins."""
+
+    memory: ClassVar[tuple[str, ...]] = ("origins",)
+
+    def prepare(self) -> None:
+        observable, self.timestep = self.observable, method_of(self.case).timestep(self.case)
+        self.theory: Displacement = observable.theory(self.case)
+        self.axes, self.centres = self.theory.axes, observable.of == "centres"
+        max_lag = max(1, observable.max_lag // observable.every)
+        length, number = self.theory.length, self.theory.number
+        if length == 1:
+            self.ids = self.theory.beads(observable.particles).ravel()
+            self.origins = Origins(len(self.ids), len(self.axes), max_lag)
+            return
+        wanted = observable.particles if self.centres else -(-observable.particles // length)
+        followed = min(wanted, number)
+        followed -= followed % GROUPS if followed > GROUPS else 0
+        # bead after bead, so that one molecule is in one group: its beads are not independent
+        self.ids = self.theory.beads(followed).T.ravel()
+        rows = followed if self.centres else len(self.ids)
+        self.origins = Origins(rows, len(self.axes), max_lag, min(GROUPS, followed))
+
+    def observe(self, engine: Particles) -> None:
+        position = engine.positions(self.ids, unwrapped=True)[:, list(self.axes)]
+        if self.centres:
+            position = position.reshape(self.theory.length, -1, len(self.axes)).mean(axis=0)
+        self.origins.add(position, _square_distance)
+
+    def result(self) -> Result:
+        """The curve and its slope where it is a straight line."""
+        steps, moved = self.origins.sampled() * self.observable.every, self.origins.estimate()
+        time, theory = steps * self.timestep, self.theory
+        expected, found = theory.expected(steps), list[Comparison]()
+        slope = late_slope(time, moved, theory.diffusive_from(), theory.grows())
+        if slope is not None:
+            found.append(self.diffusion(slope))
+        elif len(time) > 1 and math.isfinite(first := theory.diffusive_from()):
+            why = f"undetermined: fewer than three lags from {first:.3g} to {time[-1]:.3g} tau"
+            what, known = "diffusion coefficient", theory.coefficient()[0]
+            found.append(Comparison(what, math.nan, math.nan, known, "a^2/tau", why))
+        level = time >= theory.level_from()
+        if level.any() and expected is not None:
+            mean, wanted = level / level.sum(), expected[level].mean()
+            what = "mean square displacement, levelled off"
+            found.append(Comparison(what, *moved.total(mean), wanted, "a^2"))
+        elif np.isfinite(theory.level_from()) and len(steps) > 1:
+            begin = math.ceil(theory.level_from() / self.timestep)
+            note = (
+                f"theory knows the level, from lag {begin} steps on; the longest here is "
+                f"{steps[-1]}: a larger max_lag"
+            )
+            last, what = np.eye(len(steps))[-1], "mean square displacement at the longest lag"
+            found.append(Comparison(what, *moved.total(last), math.nan, "a^2", note))
+        return self.report(
+            {"time": time},
+            moved,
+            found,
+            label="mean square displacement" + " of centres of mass" * self.centres,
+            expected=expected,
+            fit=None if slope is None else slope.line,
+            theory=theory.legend(),
+            samples=self.origins.count,
+            extra={"components": "".join("xyz"[axis] for axis in self.axes)},
+        )
+
+    def diffusion(self, slope: Slope) -> Comparison:
+        """The diffusion coefficient beside theory, or why it is not known."""
+        scale = 1 / (2 * len(self.axes))
+        value, error = slope.value * scale, slope.error * scale
+        error = self.theory.with_start(error, value, self.origins.series)
+        expected, note = self.theory.coefficient()
+        if slope.growth:
+            short = not (slope.straight or self.theory.grows())
+            why = ": no straight line yet, a larger max_lag" if short else ""
+            trend = f"approximate: {'grows' if slope.growth > 0 else 'falls'} with the lag{why}"
+            decade = "error bar with its change in a decade of lags"
+            note = joined(trend, decade, note.removeprefix("approximate: "))
+        return fitted_number("diffusion coefficient", value, error, expected, "a^2/tau", note)

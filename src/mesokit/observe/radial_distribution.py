@@ -1,7 +1,7 @@
 """Radial distribution function g(r): how many others there are at a distance."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -12,14 +12,15 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
+from mesokit.observe.shared.of_method import OfMethod
 from mesokit.observe.shared.pairs import OwnPairs, count_pairs, count_within, shells
 from mesokit.observe.shared.periodic import OF, periodic_all_over
 from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
+from mesokit.seam.result import Array, Comparison, Result, joined
 from mesokit.statistics import Blocks
 
 Ids = NDArray[np.int64]
@@ -43,12 +44,13 @@ class Group(Protocol):
 
 
 class Neighbours(Protocol):
-    """What a method says of neighbours.
+    """Theory of neighbours by a method.
 
     It is made of a case and the observable, and raises CaseError where there are none. Pairs are
     those of groups `first` with `second`, or without these those within `first`. `size` is that of
     the largest particles. Of equal hard spheres `diameter` is where they touch, `value` g there,
-    both nan if not known, and `note` what to say of it.
+    both nan if not known, and `note` what to say of it. What is not overridden holds for particles
+    that interact and are all looked at.
     """
 
     first: list[Group]
@@ -60,16 +62,19 @@ class Neighbours(Protocol):
 
     def sampled(self, group: Group) -> bool:
         """True if some molecules of a group are looked at, others at each sample."""
+        return False
 
     def independent(self, groups: list[Group]) -> bool:
         """True if molecules are independent of all others."""
+        return False
 
     def diffusion(self, group: Group) -> float | None:
         """Diffusion coefficient of the molecules of a group, None if not known."""
+        return None
 
 
 @component
-class RadialDistribution(Observable):
+class RadialDistribution(OfMethod):
     """Pairs at a distance r over those of as many independent particles, in a periodic box.
 
     Of a fluid some particles are looked at, which changes the error bars and not the mean; of
@@ -78,7 +83,8 @@ class RadialDistribution(Observable):
     """
 
     quantity: Literal["radial-distribution"] = tag("radial-distribution")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    value_label = "g(r)"
+    units: ClassVar[dict[str, str]] = {"r": "a"}
     needs_fluid: ClassVar[bool] = False
     of: Literal["beads", "particles"] | None = param(None, doc=OF)
     kinds: Many[int | str] = param(
@@ -108,11 +114,6 @@ class RadialDistribution(Observable):
             raise ValueError("expected 'beads' or 'particles'; kinds are chosen by `kinds`")
         return of
 
-    def theory(self, case: Case) -> Neighbours:
-        """What the method of a case says of it. Raises CaseError without particles to look at."""
-        found: Neighbours = method_of(case).expected["radial-distribution"](case, self)
-        return found
-
     def check(self, case: Case) -> None:
         """Raise CaseError in a box that is not periodic, and without a pair to look at."""
         periodic_all_over(case, "radial-distribution")
@@ -125,48 +126,46 @@ class RadialDistribution(Observable):
         first, second = known.first, known.second
         if len(self.kinds) == 2 and {g.first for g in first} & {g.first for g in second}:
             raise CaseError(f"kinds = {show(self.kinds)}: expected two different ones, or one")
-        number = sum(group.number * group.length for group in first)
-        molecules = sum(group.number for group in first)
-        if not second and (number < 2 or (self.pairs == "between" and molecules < 2)):
-            what = "molecules" if self.pairs == "between" else "particles or beads"
+        between = self.pairs == "between"
+        if not second and (sum(g.number for g in first) if between else _size(first)) < 2:
+            what = "molecules" if between else "particles or beads"
             raise CaseError(f"no pair to look at; expected two {what} at least")
 
 
 @accumulator_of(RadialDistribution)
 class RadialDistributionAccumulator(BlockAccumulator):
-    """Block averages of g in bins, and of molecules that know nothing of others their own pairs.
+    """Block averages of g in bins, and of independent molecules the pairs that each makes.
 
     Blocks of a run in which molecules stay near see little of what their pairs scatter.
     """
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "own")
 
-    def __init__(self, observable: RadialDistribution, case: Case) -> None:
-        self.name, self.case, self.observable = observable.label, case, observable
-        self.theory = observable.theory(case)
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
+        self.theory: Neighbours = observable.theory(case)
         self.first, self.second = self.theory.first, self.theory.second
-        self.beads, self.others = (
-            [self.sample(group) for group in groups] for groups in (self.first, self.second)
+        self.beads, self.others = (  # of each group (molecules, length), all or enough of them
+            [
+                group.beads(min(group.number, max(2, observable.particles // group.length)))
+                if self.theory.sampled(group)
+                else group.beads()
+                for group in groups
+            ]
+            for groups in (self.first, self.second)
         )
         self.box = np.array(case.box.size, float)
         reach = observable.reach or min(FARTHEST * self.theory.size, min(case.box.size) / 2)
         self.edges = np.linspace(0.0, reach, observable.bins + 1)
         self.shells = shells(self.edges, case.box.dimension)
-        self.near = _beyond(self.theory.diameter)
+        self.near = np.zeros(0)  # edges of shells beyond contact
+        if not math.isnan(self.theory.diameter):
+            self.near = self.theory.diameter * np.linspace(1.0, BEYOND, SHELLS + 1)
         self.blocks = Blocks((observable.bins + max(0, len(self.near) - 1),))
-        self.own = OwnPairs(len(self.beads[0]), observable.bins) if self.alone() else None
-
-    def alone(self) -> bool:
-        """Whether all molecules of one kind are looked at, and know nothing of one another."""
+        # all molecules of one kind are looked at, and are independent of one another
         whole = len(self.first) == 1 and len(self.beads[0]) == self.first[0].number > 1
-        return whole and not self.second and self.theory.independent(self.first)
-
-    def sample(self, group: Group) -> Ids:
-        """Beads (molecules, length) of a group, or of so many as have enough particles."""
-        if not self.theory.sampled(group):
-            return group.beads()
-        most = max(2, self.observable.particles // group.length)
-        return group.beads(min(group.number, most))
+        alone = whole and not self.second and self.theory.independent(self.first)
+        self.own = OwnPairs(len(self.beads[0]), observable.bins) if alone else None
 
     def observe(self, fluid: RunningFluid) -> None:
         found = self.counts(fluid, self.edges) / self.shells
@@ -177,7 +176,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         if self.own is not None:
             places = self.places(fluid, self.first, self.beads)[0]
             molecules = places.reshape(*self.beads[0].shape, -1)
-            self.own.add(molecules, self.box, self.edges)
+            self.own.add_places(molecules, self.box, self.edges)
 
     def number(self) -> float:
         """Pairs that there are at any distance, of all molecules and not only the sample."""
@@ -210,7 +209,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         return np.asarray(found, float)
 
     def places(self, fluid: RunningFluid, groups: list[Group], beads: list[Ids]) -> list[Array]:
-        """Of the sample in each group: other molecules each time, so that few tell of all soon."""
+        """Positions of the sample in each group: of other molecules at each sample."""
         found = []
         for group, ids in zip(groups, beads, strict=True):
             if len(ids) < group.number:
@@ -222,25 +221,19 @@ class RadialDistributionAccumulator(BlockAccumulator):
     def result(self) -> Result:
         """g(r), beside 1 where particles are independent."""
         expected, found = self.expected(), self.means()
-        return Result(
-            quantity="radial-distribution",
-            name=self.name,
-            x={"r": (self.edges[1:] + self.edges[:-1]) / 2},
-            value=found.value,
-            error=_unless_fixed(found.value, self.errors(found, np.eye(len(self.shells)))),
-            label="g(r)",
-            units={"value": "", "r": "a"},
+        error = _unless_fixed(found.value, self.errors(found, np.eye(len(self.shells))))
+        return self.report(
+            {"r": (self.edges[1:] + self.edges[:-1]) / 2},
+            (found.value, error),
+            self.comparisons(expected),
             expected=None if expected is None else np.full(len(self.shells), expected),
             theory="ideal gas",
-            comparisons=tuple(self.comparisons(expected)),
-            samples=self.blocks.count,
             extra={"edges": self.edges},
         )
 
     def means(self) -> Estimate:
         """g in the bins."""
-        found, bins = of_mean(self.blocks), len(self.shells)
-        return found._replace(value=found.value[:bins], residuals=found.residuals[:, :bins])
+        return of_mean(self.blocks).part(slice(len(self.shells)))
 
     def errors(self, found: Estimate, combine: Array) -> Array:
         """Standard errors (n,) of linear combinations (n, bins) of g: in a short run those of the
@@ -251,7 +244,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         if self.own is None or not self.short_run():
             return error
         scale = self.box.prod() / (self.number() * self.shells)
-        least = self.own.error(combine * scale, self.observable.pairs == "all")
+        least = self.own.error_of_pairs(combine * scale, self.observable.pairs == "all")
         return np.where(np.isnan(error), error, np.fmax(error, least))
 
     def expected(self) -> float | None:
@@ -262,58 +255,46 @@ class RadialDistributionAccumulator(BlockAccumulator):
             return None
         return 1.0 if self.theory.independent(groups) else None
 
-    def comparisons(self, expected: float | None) -> list[Comparison]:
+    def comparisons(self, expected: float | None) -> Iterator[Comparison]:
         """Neighbours within the reach; without a theory also where g is largest."""
         if not self.blocks.count:
-            return []
+            return
         found, about = self.means(), self.number() / _size(self.first)
         density = about * (1 if self.second else 2) / float(self.box.prod())
         weights = density * self.shells
         value, error = float(weights @ found.value), self.errors(found, weights[None])[0]
-        error = float(_unless_fixed(value, error))
         known = np.nan if expected is None else expected * float(weights.sum())
-        short = self.short_run()
-        note = "; ".join(filter(None, (f"r < {self.edges[-1]:g}", short)))
-        listed = [Comparison("neighbours within the reach", value, error, known, "", note)]
+        short, error = self.short_run(), _unless_fixed(value, error)
+        note = joined(f"r < {self.edges[-1]:g}", short)
+        yield Comparison("neighbours within the reach", value, error, known, "", note)
         if expected is None:
             top = int(np.argmax(found.value))
-            note = f"at r = {(self.edges[top] + self.edges[top + 1]) / 2:.3g}"
-            note = "; ".join(filter(None, (note, short)))
-            height = float(found.value[top])
+            note = joined(f"at r = {(self.edges[top] + self.edges[top + 1]) / 2:.3g}", short)
             each = self.errors(found, np.eye(len(self.shells)))
-            error = float(_unless_fixed(height, each[top]))
-            listed.append(Comparison("largest g(r)", height, error, note=note))
-        if len(self.near):
-            listed.append(self.contact())
-        return listed
-
-    def contact(self) -> Comparison:
-        """g at contact: a parabola through the shells beyond it."""
-        theory = self.theory
-        found, centres = of_mean(self.blocks), (self.near[1:] + self.near[:-1]) / 2
-        powers = np.vander(centres / theory.diameter - 1.0, 3, increasing=True)
-        weights = np.zeros(len(found.value))
-        weights[len(self.shells) :] = np.linalg.pinv(powers)[0]
-        value, error = found.scalar(weights @ found.value, weights)
-        return Comparison("g at contact", value, error, theory.value, "", theory.note)
+            error = _unless_fixed(found.value[top], each[top])
+            yield Comparison("largest g(r)", found.value[top], error, note=note)
+        if len(self.near):  # a parabola through the shells beyond contact
+            found, centres = of_mean(self.blocks), (self.near[1:] + self.near[:-1]) / 2
+            powers = np.vander(centres / self.theory.diameter - 1.0, 3, increasing=True)
+            weights = np.zeros(len(found.value))
+            weights[len(self.shells) :] = np.linalg.pinv(powers)[0]
+            at_contact = found.total(weights)
+            yield Comparison("g at contact", *at_contact, self.theory.value, "", self.theory.note)
 
     def times(self) -> float:
-        """How often in a run two of them diffuse over the reach, after which their distance is
-        forgotten: R^2/(2 d D), D the sum of their coefficients; nan where these are not known."""
-        case = self.case
-        centres = [self.theory.diffusion(group) for group in self.first + self.second]
-        if any(found is None for found in centres):
-            return np.nan
-        slowest = min(found for found in centres[: len(self.first)] if found)
-        other = min([found for found in centres[len(self.first) :] if found], default=slowest)
-        run = (
-            self.blocks.count
-            / self.blocks.series
-            * self.observable.every
-            * method_of(case).timestep(case)
+        """Number of times in a run that two of them diffuse over the reach and forget their
+        distance: R^2/(2 d D), D the sum of their coefficients; nan where these are not known."""
+        first, second = (
+            [self.theory.diffusion(group) for group in groups]
+            for groups in (self.first, self.second)
         )
-        reach = float(self.edges[-1])
-        return run * 2 * case.box.dimension * (slowest + other) / reach**2
+        if None in first + second:
+            return np.nan
+        slowest = min(filter(None, first))
+        other = min(filter(None, second), default=slowest)
+        blocks, case = self.blocks, self.case
+        run = blocks.count / blocks.series * self.observable.every * method_of(case).timestep(case)
+        return run * 2 * case.box.dimension * (slowest + other) / float(self.edges[-1]) ** 2
 
     def short_run(self) -> str:
         """Where blocking cannot see how slowly neighbours change: a note."""
@@ -323,14 +304,9 @@ class RadialDistributionAccumulator(BlockAccumulator):
         return of_relaxations(times, self.blocks.series, "diffusion times of the reach")
 
 
-def _unless_fixed(value: Array | float, error: Array | float) -> Array:
+def _unless_fixed(value: Any, error: Any) -> Any:
     """The error, nan where it is that of rounding: a number that never changed."""
     return np.where(np.asarray(error) > ROUNDING * np.abs(value), error, np.nan)
-
-
-def _beyond(diameter: float) -> Array:
-    """Edges of shells from contact on; none without a diameter of all."""
-    return np.zeros(0) if math.isnan(diameter) else diameter * np.linspace(1.0, BEYOND, SHELLS + 1)
 
 
 def _size(groups: list[Group]) -> int:

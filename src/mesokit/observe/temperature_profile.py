@@ -5,19 +5,17 @@ from typing import ClassVar, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import KIND, Array, Compared, Profile, ProfileAccumulator
 from mesokit.seam.engine import RunningFluid, RunningSpheres
 from mesokit.seam.estimate import Estimate, of_ratio
-from mesokit.seam.method import method_of
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
 from mesokit.statistics import Blocks
 
 
 class TemperatureInSlices(Protocol):
-    """What a method says of the temperature.
+    """Theory of the temperature by a method.
 
     It is made of a case and the observable, and raises CaseError for a kind that there is not.
     `ids` are the particles that count, None if all do; `across` is another axis across which the
@@ -48,17 +46,8 @@ class TemperatureProfile(Profile):
 
     quantity: Literal["temperature-profile"] = tag("temperature-profile")
     at_any_kT: ClassVar[tuple[str, ...]] = ("",)
+    value_label = "temperature k_B T"
     kind: int | str | None = param(None, doc=KIND)
-
-    def theory(self, case: Case) -> TemperatureInSlices:
-        """What the method of a case says of it. Raises CaseError for a kind that there is not."""
-        found: TemperatureInSlices = method_of(case).expected["temperature-profile"](case, self)
-        return found
-
-    def check(self, case: Case) -> None:
-        """Raise CaseError for an axis that the box has not, and a kind that there is not."""
-        super(TemperatureProfile, self).check(case)  # noqa: UP008  # the decorator makes a new class
-        self.theory(case)
 
 
 @accumulator_of(TemperatureProfile)
@@ -68,18 +57,16 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
     There is one bin across the flow if nothing flows, or if it varies across the profile's axis.
     """
 
-    def __init__(self, observable: TemperatureProfile, case: Case) -> None:
-        width, self.dimension = 3 + case.box.dimension, case.box.dimension
-        super().__init__(observable, case, width)
-        self.theory = observable.theory(case)
-        self.ids, self.across = self.theory.ids, self.theory.across
+    def prepare(self) -> None:
+        super().prepare()
+        self.dimension, self.across = self.case.box.dimension, self.theory.across
         if self.across is not None:
+            length = self.case.box.size[self.across]
             self.axes += (self.across,)
-            self.counts += (max(1, round(case.box.size[self.across] * observable.bins_per_cell)),)
-        self.blocks = Blocks((width, *self.counts))
+            self.counts += (max(1, round(length * self.observable.bins_per_cell)),)
+        self.blocks = Blocks((3 + self.dimension, *self.counts))
 
     def sums(self, engine: RunningFluid | RunningSpheres) -> Array:
-        """Number, mass, sum of m v^2 and momentum."""
         number, mass, momentum, energy = self.moments(engine)
         return np.concatenate([[number, mass, energy], momentum])
 
@@ -108,18 +95,5 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
         each, sightings = temperature._replace(weights=samples.astype(float)), number.sum(axis=0)
         known = self.theory.compared(self, each, everywhere, sightings)
         few = sightings < self.theory.fewest
-        return Result(
-            quantity="temperature-profile",
-            drawing="profile",
-            name=self.name,
-            x={self.observable.axis: self.centres},
-            value=np.where(few, np.nan, temperature.value),
-            error=np.where(few, np.nan, temperature.error),
-            label="temperature k_B T",
-            units={"value": "m a^2/tau^2", self.observable.axis: "a"},
-            expected=known.expected,
-            theory=known.law,
-            comparisons=tuple(known.comparisons),
-            samples=self.blocks.count,
-            extra={"bins_per_cell": self.observable.bins_per_cell},
-        )
+        value, error = (np.where(few, np.nan, a) for a in (temperature.value, temperature.error))
+        return self.in_slices((value, error), known, "m a^2/tau^2")

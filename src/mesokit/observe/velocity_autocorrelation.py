@@ -1,18 +1,19 @@
 """Velocity autocorrelation of particles."""
 
 import math
+from collections.abc import Iterator
 from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, tag
+from mesokit.observe.shared.of_method import OfMethod
 from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import spread_ids
 
@@ -20,7 +21,7 @@ Integers = NDArray[np.int64]
 
 
 class VelocityMemory(Protocol):
-    """What a method says of how long its particles remember their velocity.
+    """Theory of the autocorrelation of velocities by a method.
 
     It is made of a case and the observable, and raises CaseError where there is nothing to follow.
     `axes` are those that count. What is not overridden holds for particles without a theory.
@@ -33,7 +34,7 @@ class VelocityMemory(Protocol):
         return None
 
     def legend(self) -> str:
-        """What the theory is called in a figure."""
+        """Name of the theory in a figure."""
         return ""
 
     def level(self, error: float, runs: int) -> tuple[float, float] | None:
@@ -46,7 +47,7 @@ class VelocityMemory(Protocol):
         return error
 
     def share(self, every: int) -> str | None:
-        """What to say of the share that is left after a lag; None if it is not told."""
+        """Note on the share that is left after a lag; None if that is not reported."""
         return None
 
     def diffusion(self, every: int) -> tuple[float, str] | None:
@@ -64,7 +65,7 @@ class VelocityMemory(Protocol):
 
 
 @component
-class VelocityAutocorrelation(Observable):
+class VelocityAutocorrelation(OfMethod):
     """Mean product of a particle's velocity at two times, one component: kT/m at lag 0.
 
     Axes along which the fluid flows or that a wall closes are left out. The integral is a diffusion
@@ -72,21 +73,13 @@ class VelocityAutocorrelation(Observable):
     """
 
     quantity: Literal["velocity-autocorrelation"] = tag("velocity-autocorrelation")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    drawing, value_label = "memory", "velocity autocorrelation"
+    units: ClassVar[dict[str, str]] = {"value": "a^2/tau^2", "time": "tau"}
     asks_transport: ClassVar[bool] = True
     in_open_box: ClassVar[bool] = True
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     particles: int = param(2000, doc="particles followed", ge=1)
     max_lag: int = param(200, doc="longest lag", unit="steps", ge=1)
-
-    def memory(self, case: Case) -> VelocityMemory:
-        """What the method of a case says of it. Raises CaseError if there is nothing to follow."""
-        found: VelocityMemory = method_of(case).expected["velocity-autocorrelation"](case, self)
-        return found
-
-    def check(self, case: Case) -> None:
-        """Raise CaseError without an axis to follow."""
-        self.memory(case)
 
 
 @accumulator_of(VelocityAutocorrelation)
@@ -95,14 +88,11 @@ class VelocityAutocorrelationAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("origins",)
 
-    def __init__(self, observable: VelocityAutocorrelation, case: Case) -> None:
-        self.observable, self.name, self.theory = (
-            observable,
-            observable.label,
-            observable.memory(case),
-        )
-        self.axes, self.timestep = list(self.theory.axes), method_of(case).timestep(case)
-        self.ids = spread_ids(observable.particles, case.particles)
+    def prepare(self) -> None:
+        observable, self.timestep = self.observable, method_of(self.case).timestep(self.case)
+        self.theory: VelocityMemory = observable.theory(self.case)
+        self.axes = list(self.theory.axes)
+        self.ids = spread_ids(observable.particles, self.case.particles)
         max_lag = max(1, observable.max_lag // observable.every)
         self.origins = Origins(len(self.ids), len(self.axes), max_lag)
 
@@ -112,61 +102,50 @@ class VelocityAutocorrelationAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """The curve with molecular chaos and the hydrodynamic tail."""
-        total, axes = self.origins.estimate(), len(self.axes)
-        kept = total.divided(axes)
+        kept = self.origins.estimate().divided(len(self.axes))
         steps = self.origins.sampled() * self.observable.every
         time = steps * self.timestep
         expected, tail = self.theory.expected(steps), self.theory.tail(time)
-        return Result(
-            quantity="velocity-autocorrelation",
-            drawing="memory",
-            name=self.name,
-            x={"time": time},
-            value=kept.value,
-            error=kept.error,
-            label="velocity autocorrelation",
-            units={"value": "a^2/tau^2", "time": "tau"},
+        return self.report(
+            {"time": time},
+            kept,
+            self.comparisons(time, kept, expected, tail),
             expected=expected,
             theory=self.theory.legend(),
-            comparisons=tuple(self.comparisons(time, kept, expected, tail)),
             samples=self.origins.count,
             extra={} if tail is None else {"tail": tail},
         )
 
     def comparisons(
         self, time: Array, kept: Estimate, expected: Array | None, tail: Array | None
-    ) -> list[Comparison]:
+    ) -> Iterator[Comparison]:
         """Equipartition, what the first collisions leave, the diffusion coefficient, the tail."""
-        if not len(time):
-            return []
-        n, every, found = len(time), self.observable.every, []
+        n, every, runs = len(time), self.observable.every, self.origins.series
+        if not n:
+            return
         first = np.eye(n)[0]
         value, error = kept.scalar(kept.value[0], first)
-        if (level := self.theory.level(error, self.origins.series)) is not None:
+        if (level := self.theory.level(error, runs)) is not None:
             known, error = level
-            found.append(Comparison("value at lag 0", value, error, known, "a^2/tau^2"))
+            yield Comparison("value at lag 0", value, error, known, "a^2/tau^2")
         if n < 3:
-            return found
+            return
         if (note := self.theory.share(every)) is not None and expected is not None:
             share = kept.value[1] / kept.value[0]
             gradient = (np.eye(n)[1] - share * first) / kept.value[0]
-            value, error = kept.scalar(share, gradient)
             what, known = f"share left after {time[1]:g} tau", float(expected[1] / expected[0])
-            found.append(Comparison(what, value, error, known, "", note))
+            yield Comparison(what, *kept.scalar(share, gradient), known, "", note)
         if (diffusion := self.theory.diffusion(every)) is not None:
-            widths = np.diff(time)
             trapezoid = np.zeros(n)
-            trapezoid[1:] += widths / 2
-            trapezoid[:-1] += widths / 2
-            value, error = kept.scalar(trapezoid @ kept.value, trapezoid)
-            error = self.theory.with_start(error, value, self.origins.series)
+            trapezoid[1:] += np.diff(time) / 2
+            trapezoid[:-1] += np.diff(time) / 2
+            value, error = kept.total(trapezoid)
+            error = self.theory.with_start(error, value, runs)
             what = f"diffusion coefficient up to {time[-1]:g} tau"
-            found.append(Comparison(what, value, error, diffusion[0], "a^2/tau", diffusion[1]))
+            yield Comparison(what, value, error, diffusion[0], "a^2/tau", diffusion[1])
         if tail is not None:
             window = np.isfinite(tail) & (time <= self.theory.crossing())
             if window.sum() >= 3:
                 weight = np.where(window, tail, 0.0)  # as the noise is the same everywhere
                 weight /= (weight**2).sum()
-                value, error = kept.scalar(weight @ kept.value, weight)
-                found.append(Comparison("ratio to the hydrodynamic tail", value, error, 1.0))
-        return found
+                yield Comparison("ratio to the hydrodynamic tail", *kept.total(weight), 1.0)

@@ -1,7 +1,8 @@
-"""How velocities are distributed: a component and the speed, beside Maxwell."""
+"""Distribution of velocities: a component and the speed, beside Maxwell."""
 
 import math
-from typing import Any, ClassVar, Literal, Protocol
+from dataclasses import replace
+from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +12,10 @@ from mesokit.case.box import AXES, Axis
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.observe.shared import chi_square
+from mesokit.observe.shared.of_method import OfMethod
 from mesokit.observe.shared.profile import KIND
 from mesokit.seam.engine import RunningFluid, RunningSpheres
-from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -22,7 +23,7 @@ FARTHEST = 5.0  # thermal velocities: what is beyond counts in the last bins
 
 
 class Velocities(Protocol):
-    """What a method says of them.
+    """Theory of velocities by a method.
 
     It is made of a case and the observable, and raises CaseError where there is nothing to look at.
     `axis` is that of the component, `ids` the particles that count; `known` says whether there is a
@@ -47,14 +48,14 @@ class Velocities(Protocol):
         """By how much kT may be off for good, relative, over so many runs."""
 
     def legend(self) -> str:
-        """What the theory is called in a figure."""
+        """Name of the theory in a figure."""
 
     def note(self, classes: int) -> str:
-        """What to say of a chi-square over so many classes."""
+        """Note on a chi-square over so many classes."""
 
 
 @component
-class VelocityDistribution(Observable):
+class VelocityDistribution(OfMethod):
     """Histograms of a component of the velocity and of the speed, in thermal velocities sqrt(kT/m).
 
     Kinds of particles of different mass share one histogram. Velocities of spheres are about their
@@ -64,7 +65,8 @@ class VelocityDistribution(Observable):
     """
 
     quantity: Literal["velocity-distribution"] = tag("velocity-distribution")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    drawing, value_label = "histograms", "probability density"
+    units: ClassVar[dict[str, str]] = {"of": ""}
     in_open_box: ClassVar[bool] = True
     component: Axis | None = param(
         None, doc="of the velocity (the first along which nothing flows)"
@@ -77,118 +79,90 @@ class VelocityDistribution(Observable):
         """Raise CaseError for z in 2D, and where there is nothing to look at."""
         if self.component is not None:
             case.box.index(self.component, "component")
-        self.velocities(case)
-
-    def velocities(self, case: Case) -> Velocities:
-        """What the method of a case says of them."""
-        found: Velocities = method_of(case).expected["velocity-distribution"](case, self)
-        return found
+        self.theory(case)
 
 
 @accumulator_of(VelocityDistribution)
 class VelocityDistributionAccumulator(BlockAccumulator):
     """Block averages of both histograms, as shares of the particles, and of both chi-squares."""
 
-    def __init__(self, observable: VelocityDistribution, case: Case) -> None:
-        self.name, self.case, d = observable.label, case, case.box.dimension
-        self.theory = observable.velocities(case)
-        self.axis = self.theory.axis
-        self.edges = np.stack(
-            [np.linspace(low, FARTHEST, observable.bins + 1) for low in (-FARTHEST, 0.0)]
-        )
+    def prepare(self) -> None:
+        bins, d = self.observable.bins, self.case.box.dimension
+        self.theory: Velocities = self.observable.theory(self.case)
+        self.edges = np.stack([np.linspace(low, FARTHEST, bins + 1) for low in (-FARTHEST, 0.0)])
         cumulant = float(np.nan_to_num(self.theory.cumulant))
-        self.cdf = [_ends(theory.sonine_component_cdf(self.edges[0], cumulant), True)]
-        self.cdf.append(_ends(theory.sonine_speed_cdf(self.edges[1], d, cumulant), False))
-        self.probability = np.diff(self.cdf, axis=1)
+        component = np.array(theory.sonine_component_cdf(self.edges[0], cumulant), float)
+        speed = np.array(theory.sonine_speed_cdf(self.edges[1], d, cumulant), float)
+        component[0], component[-1], speed[-1] = 0.0, 1.0, 1.0  # these bins have no end
+        self.probability = np.diff([component, speed], axis=1)
         number = len(self.theory.ids)
         self.of = [chi_square.classes(p, number) for p in self.probability]
-        self.blocks = Blocks((2 * observable.bins + 2,))
+        self.blocks = Blocks((2 * bins + 2,))
 
     def observe(self, engine: RunningFluid | RunningSpheres) -> None:
         u = self.theory.numbers(engine)
         shares, squares = [], []
-        for k, values in enumerate((u[:, self.axis], np.linalg.norm(u, axis=1))):
+        for k, values in enumerate((u[:, self.theory.axis], np.linalg.norm(u, axis=1))):
+            probability, of = self.probability[k], self.of[k]
             place = np.searchsorted(self.edges[k], values, "right") - 1
-            count = np.bincount(
-                np.clip(place, 0, len(self.probability[k]) - 1), minlength=len(self.probability[k])
-            ).astype(float)
-            of = self.of[k]
-            merged = chi_square.joined(count, of), chi_square.joined(self.probability[k], of)
+            place = np.clip(place, 0, len(probability) - 1)
+            count = np.bincount(place, minlength=len(probability)).astype(float)
+            merged = chi_square.joined(count, of), chi_square.joined(probability, of)
             squares.append(chi_square.chi_square(*merged))
             shares.append(count / len(values))
         self.blocks.add(np.concatenate([*shares, squares]))
 
     def result(self) -> Result:
         """Probability densities."""
-        bins = self.probability.shape[1]
-        width = np.diff(self.edges, axis=1)
+        bins, width = self.observable.bins, np.diff(self.edges, axis=1)
         mean, error = self.blocks.mean(), self.blocks.error()
-        axis = AXES[self.axis]
-        return Result(
-            quantity="velocity-distribution",
-            drawing="histograms",
-            name=self.name,
-            x={"of": np.array([f"v_{axis}", "speed"]), "bin": np.arange(bins)},
-            value=mean[:-2].reshape(2, bins) / width,
-            error=np.hypot(error[:-2].reshape(2, bins), self._start()) / width,
-            expected=self._expected() / width,
-            label="probability density",
-            units={"value": "", "of": ""},
+        # each bin may be off for good in a fluid that keeps the energy that it started with
+        warm = self.theory.warm(self.blocks.series)
+        start = np.stack([0.5 * warm * abs(self._flux(k)) for k in range(2)])
+        known = np.array(self.theory.known)[:, None]
+        names = f"v_{AXES[self.theory.axis]}", "speed"
+        result = self.report(
+            {"of": names, "bin": np.arange(bins)},
+            (
+                mean[:-2].reshape(2, bins) / width,
+                np.hypot(error[:-2].reshape(2, bins), start) / width,
+            ),
+            expected=np.where(known, self.probability, np.nan) / width,
             theory=self.theory.legend(),
-            comparisons=tuple(self._comparisons(mean[-2:], error[-2:])),
-            samples=self.blocks.count,
             extra={"edges": self.edges.copy()},
         )
+        found = (self.compared(k, name, mean[k - 2], error[k - 2]) for k, name in enumerate(names))
+        return replace(result, comparisons=tuple(filter(None, found)))  # without samples, too
 
-    def _start(self) -> Array:
-        """How far each bin may be off for good in a fluid that keeps the energy it started with."""
-        warm = self.theory.warm(self.blocks.series)
-        return np.stack([0.5 * warm * abs(self._flux(k)) for k in range(2)])
+    def compared(self, k: int, name: str, mean: float, error: float) -> Comparison | None:
+        """Mean chi-square of a sample of the component (k = 0) or of the speed, and its error.
 
-    def _expected(self) -> Array:
-        return np.where(np.array(self.theory.known)[:, None], self.probability, np.nan)
-
-    def _comparisons(self, mean: Array, error: Array) -> list[Comparison]:
-        """Mean chi-square of a sample of each."""
-        found = []
-        for k, name in enumerate((f"v_{AXES[self.axis]}", "speed")):
-            probability = chi_square.joined(self.probability[k], self.of[k])
-            if len(probability) < 2:  # too few in a sample to tell classes apart
-                continue
-            expected, spread = self._degrees(k, probability)
-            found.append(
-                Comparison(
-                    f"mean chi-square of {name}",
-                    float(mean[k]),
-                    float(np.hypot(error[k], spread)),
-                    expected if self.theory.known[k] else math.nan,
-                    "",
-                    self.theory.note(len(probability)),
-                )
-            )
-        return found
-
-    def _degrees(self, k: int, probability: Array) -> tuple[float, float]:
-        """Expected mean of chi-square, and by how much it differs from run to run for good."""
-        degrees, known = len(probability) - 1.0, self.theory
-        if k == 0:
-            degrees -= known.taken_by_mean * chi_square.taken(self._with_mean(), probability)
-        # energy of all components together, of which a single one sees a share 1/d
-        energy = chi_square.taken(self._with_energy(k), probability)
-        energy /= 1 if k else self.case.box.dimension
+        None with too few particles in a sample to tell classes apart.
+        """
+        probability = chi_square.joined(self.probability[k], self.of[k])
+        if len(probability) < 2:
+            return None
+        degrees, known, d = len(probability) - 1.0, self.theory, self.case.box.dimension
+        if k == 0:  # covariance of each class of the component with the component
+            density = theory.maxwell_component_pdf(self.edges[0])
+            density[[0, -1]] = 0.0  # the first and last bin have no end
+            with_mean = chi_square.joined(-np.diff(density), self.of[0])
+            degrees -= known.taken_by_mean * chi_square.taken(with_mean, probability)
+        # covariance of each class with the square of the number, scaled to a variance of 1
+        with_energy = chi_square.joined(self._flux(k), self.of[k]) / math.sqrt(
+            2.0 * (d if k else 1)
+        )
+        # energy of all components together, of which a single one has a share 1/d
+        energy = chi_square.taken(with_energy, probability) / (1 if k else d)
         spread = math.sqrt(2.0 / max(self.blocks.series, 1)) * known.kept_energy * energy
-        return degrees - known.taken_by_energy * energy, spread
-
-    def _with_mean(self) -> Array:
-        """Covariance of each class of the component with the component."""
-        density = theory.maxwell_component_pdf(self.edges[0])
-        density[[0, -1]] = 0.0  # the first and last bin have no end
-        return chi_square.joined(-np.diff(density), self.of[0])
-
-    def _with_energy(self, k: int) -> Array:
-        """Covariance of each class with the square of the number, scaled to a variance of 1."""
-        degrees = self.case.box.dimension if k else 1
-        return chi_square.joined(self._flux(k), self.of[k]) / math.sqrt(2.0 * degrees)
+        return Comparison(
+            f"mean chi-square of {name}",
+            mean,
+            np.hypot(error, spread),
+            degrees - known.taken_by_energy * energy if known.known[k] else math.nan,
+            "",
+            known.note(len(probability)),
+        )
 
     def _flux(self, k: int) -> Array:
         """Covariance of each bin with the square of the number.
@@ -201,12 +175,3 @@ class VelocityDistributionAccumulator(BlockAccumulator):
         flow = u * f
         flow[[0, -1]] = 0.0  # no end there
         return np.asarray(-np.diff(flow))
-
-
-def _ends(cdf: Array, both: bool) -> NDArray[Any]:
-    """The distribution where the last bin, and for `both` the first, have no end."""
-    closed = np.array(cdf, float)
-    closed[-1] = 1.0
-    if both:
-        closed[0] = 0.0
-    return closed

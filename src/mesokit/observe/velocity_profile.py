@@ -12,13 +12,13 @@ from mesokit.case.component import component, param, tag
 from mesokit.observe.shared.profile import KIND, Array, Compared, Profile, ProfileAccumulator
 from mesokit.seam.engine import RunningFluid, RunningSpheres
 from mesokit.seam.estimate import Estimate, of_ratio
-from mesokit.seam.method import method_of
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Result
+from mesokit.statistics import Blocks
 
 
 class FlowInSlices(Protocol):
-    """What a method says of the flow.
+    """Theory of the flow by a method.
 
     It is made of a case and the observable, and raises CaseError for an axis or a kind that there
     is not. `component` is the axis of the velocity, `ids` are the particles that count, None if
@@ -29,7 +29,7 @@ class FlowInSlices(Protocol):
     ids: NDArray[np.int64] | None
 
     def warnings(self) -> Iterator[str]:
-        """What one should know before it is measured."""
+        """Warnings before it is measured."""
 
     def compared(self, profile: ProfileAccumulator, velocity: Estimate, sums: Array) -> Compared:
         """The velocity (bins,) beside the steady flow, by the sums (2, bins) of momentum and
@@ -53,16 +53,6 @@ class VelocityProfile(Profile):
     component: Axis | None = param(None, doc="axis of the velocity (that of the flow unless said)")
     kind: int | str | None = param(None, doc=KIND)
 
-    def theory(self, case: Case) -> FlowInSlices:
-        """What the method of a case says of it. Raises CaseError for what the case has not."""
-        found: FlowInSlices = method_of(case).expected["velocity-profile"](case, self)
-        return found
-
-    def check(self, case: Case) -> None:
-        """Raise CaseError for an axis or a kind that there is not."""
-        super(VelocityProfile, self).check(case)  # noqa: UP008  # the decorator makes a new class
-        self.theory(case)
-
     def warnings(self, case: Case) -> Iterator[str]:
         """A component along which nothing flows."""
         yield from self.theory(case).warnings()
@@ -72,35 +62,20 @@ class VelocityProfile(Profile):
 class VelocityProfileAccumulator(ProfileAccumulator):
     """Momentum and mass of each slice."""
 
-    def __init__(self, observable: VelocityProfile, case: Case) -> None:
-        super().__init__(observable, case, width=2)
-        self.theory = observable.theory(case)
-        self.component, self.ids = self.theory.component, self.theory.ids
+    def prepare(self) -> None:
+        super().prepare()
+        self.blocks = Blocks((2, self.bins))
 
     def sums(self, engine: RunningFluid | RunningSpheres) -> Array:
-        """Momentum along the component, and mass."""
         _, mass, momentum, _ = self.moments(engine)
-        return np.stack([momentum[self.component], mass])
+        return np.stack([momentum[self.theory.component], mass])
 
     def result(self) -> Result:
         """The profile, the steady flow expected, and the fit that suits it."""
         sums, _ = self.blocks.sums()
         velocity = of_ratio(sums[:, 0], sums[:, 1])
-        known, letter = self.theory.compared(self, velocity, sums.sum(axis=0)), AXES[self.component]
-        return Result(
-            quantity="velocity-profile",
-            drawing="profile",
-            name=self.name,
-            x={self.observable.axis: self.centres},
-            value=velocity.value,
-            error=velocity.error,
-            label=f"velocity v_{letter}",
-            units={"value": "a/tau", self.observable.axis: "a"},
-            expected=known.expected,
-            fit=known.fit,
-            theory=known.law,
-            comparisons=tuple(known.comparisons),
-            samples=self.blocks.count,
-            extra={"bins_per_cell": self.observable.bins_per_cell, "component": letter}
-            | dict(known.extra),
+        known = self.theory.compared(self, velocity, sums.sum(axis=0))
+        axis = AXES[self.theory.component]
+        return self.in_slices(
+            velocity, known, "a/tau", label=f"velocity v_{axis}", extra={"component": axis}
         )

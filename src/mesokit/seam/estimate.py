@@ -83,6 +83,10 @@ class Estimate(NamedTuple):
             spans=spans,
         )
 
+    def total(self, weights: Array) -> tuple[float, float]:
+        """The sum of the values (n,) times weights (n,), and its standard error."""
+        return self.scalar(weights @ self.value, weights)
+
     def scalar(
         self, value: float | Array, gradient: Array, over: tuple[float | Array, Array] | None = None
     ) -> tuple[float, float]:

@@ -1,7 +1,7 @@
 """What an observable is, and how it keeps its numbers."""
 
 from abc import ABC, abstractmethod, update_abstractmethods
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 
 import numpy as np
@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, option
 from mesokit.case.registry import family
-from mesokit.seam.result import Result
+from mesokit.seam.estimate import Estimate
+from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 Array = NDArray[np.floating[Any]]
@@ -58,6 +59,10 @@ class Observable(ABC):  # noqa: B024  # `accumulator` is abstract
     in_any_flow: ClassVar[tuple[str, ...]] = ()
     at_any_kT: ClassVar[tuple[str, ...]] = ()
     measures: ClassVar[tuple[str, ...]] = ()  # "stress" or "walls": what the step has to sum for it
+    # of its result: kind of figure, words for the values, units of these ("value") and of axes
+    drawing: ClassVar[str] = "curve"
+    value_label: ClassVar[str] = ""
+    units: ClassVar[dict[str, str]] = {}
     every: int = option(default=10, doc="steps between two samples", ge=1, kw_only=True)
     name: str | None = option(
         default=None,
@@ -132,12 +137,63 @@ class BlockAccumulator(ABC):
 
     Each is a part that has a state of its own (`Blocks`, `TimeSeries`, ...), a number or an array.
     A part that is None is left out. Parts that can pool those of another run do so; numbers and
-    arrays stay those of this run, unless they are `added`.
+    arrays stay those of this run, unless they are `added`. It is made of an observable and a case;
+    a subclass makes its parts in `prepare`.
     """
 
     memory: ClassVar[tuple[str, ...]] = ("blocks",)
     added: ClassVar[tuple[str, ...]] = ()  # numbers, arrays and lists that pooling adds up
+    observable: Any
+    case: Case
     blocks: Blocks
+
+    def __init__(self, observable: Any, case: Case) -> None:
+        self.observable, self.case = observable, case
+        self.prepare()
+
+    def prepare(self) -> None:  # noqa: B027  # a subclass may have an __init__ instead
+        """Make the parts that samples are added to."""
+
+    def report(
+        self,
+        x: Mapping[str, Any],
+        found: Estimate | Blocks | tuple[Array, Array] | Array,
+        comparisons: Iterable[Comparison | None] = (),
+        *,
+        samples: int | None = None,
+        units: Mapping[str, str] | None = None,
+        **more: Any,
+    ) -> Result:
+        """The result; label, drawing and units are those of the observable.
+
+        Parameters
+        ----------
+        x: coordinates of each axis, arrays or sequences.
+        found: an estimate, the means of blocks, values with errors, or values without (nan).
+        comparisons: only drawn up where there are samples; None is left out.
+        samples: their number (that of `blocks` unless given).
+        units: further units, that of "value" included.
+        more: further fields of `Result`, such as `expected`, `theory`, `label`.
+        """
+        observable, count = self.observable, self.blocks.count if samples is None else samples
+        if isinstance(found, Estimate):
+            found = found.value, found.error
+        elif isinstance(found, Blocks):
+            found = found.mean(), found.error()
+        elif not isinstance(found, tuple):
+            found = found, np.full(np.shape(found), np.nan)
+        known = {"label": observable.value_label, "drawing": observable.drawing}
+        return Result(
+            quantity=name_of(observable),
+            name=observable.label,
+            x={name: np.asarray(axis) for name, axis in x.items()},
+            value=found[0],
+            error=found[1],
+            units={"value": ""} | observable.units | dict(units or {}),
+            comparisons=tuple(c for c in comparisons if c) if count else (),
+            samples=count,
+            **(known | more),
+        )
 
     def state(self) -> State:
         """All it has to remember."""

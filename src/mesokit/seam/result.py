@@ -33,8 +33,9 @@ class Comparison:
     Parameters
     ----------
     what: what was measured, in words, such as "viscosity from curvature".
-    measured, error: value and standard error; the error is 0 for what must hold exactly. Both are
-        nan where the run does not determine the number, such as a quotient whose divisor may be 0.
+    measured, error: value and standard error (numbers or 0-d arrays); the error is 0 for what must
+        hold exactly. Both are nan where the run does not determine the number, such as a quotient
+        whose divisor may be 0.
     expected: the theory, nan where there is none.
     unit: of all three.
     note: what the theory assumes, or what the estimate is. One that starts with "approximate" says
@@ -59,6 +60,11 @@ class Comparison:
     unit: str = ""
     note: str = ""
     inverse: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("measured", "error", "expected"):
+            if isinstance(number := getattr(self, name), np.generic | np.ndarray):
+                object.__setattr__(self, name, float(number))
 
     @property
     def key(self) -> str:
@@ -159,6 +165,15 @@ class Comparison:
         if self.note and (not math.isfinite(self.deviation) or self.lower_bound):
             text += f" ({self.note})"
         return text
+
+
+def joined(*notes: str) -> str:
+    """Notes as one, without those that are empty.
+
+    >>> joined("", "steady flow", "no slip")
+    'steady flow; no slip'
+    """
+    return "; ".join(filter(None, notes))
 
 
 def with_error(value: float, error: float) -> str:

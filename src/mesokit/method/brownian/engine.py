@@ -1,7 +1,8 @@
-"""The particles in memory. They do not feel one another, so threads share them and never meet."""
+"""Engine: particles do not interact, so threads share them and need no barriers."""
 
 from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from time import perf_counter
 from typing import Any
 
@@ -46,16 +47,16 @@ class Brownians:
 
     def _run(self, loop: Callable, *arguments: Any) -> None:
         counter = Counter(np.uint64(self.seed), np.uint64(self.step))
-        parts = zip(self.edges[:-1], self.edges[1:], strict=True)
+        parts = pairwise(self.edges)
         jobs = [self.worker.submit(loop, first, last, counter, *arguments) for first, last in parts]
         for job in jobs:
             job.result()
 
     def check(self) -> None:
-        """Nothing can break down."""
+        """Do nothing: no state is invalid."""
 
     def end_warmup(self) -> None:
-        """Nothing is summed up."""
+        """Do nothing: the engine has no sums since the start."""
 
     @property
     def time(self) -> float:
@@ -68,7 +69,7 @@ class Brownians:
         return self.places[chosen] + (self.counts[chosen] * self.box if unwrapped else 0.0)
 
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
-        """How many boxes away the particles are, (n, d)."""
+        """Image counts (n, d) of the particles."""
         return self.counts[slice(None) if ids is None else ids].copy()
 
     def state(self) -> State:

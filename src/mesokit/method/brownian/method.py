@@ -1,7 +1,7 @@
-"""Brownian motion, as the rest of the package knows it."""
+"""Brownian motion: the record by which mesokit runs it."""
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -41,15 +41,12 @@ class Displacement(mean_square_displacement.Displacement):
         self.diffusion, self.timestep = case.brownian.diffusion, case.brownian.timestep
 
     def expected(self, steps: Integers) -> Array:
-        """2 d D t."""
         return 2 * len(self.axes) * self.diffusion * self.timestep * steps
 
     def coefficient(self) -> tuple[float, str]:
-        """D, which is exact."""
         return self.diffusion, "exact"
 
     def legend(self) -> str:
-        """The formula."""
         return f"{2 * len(self.axes)} D t"
 
 
@@ -108,10 +105,9 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
         raise CaseError(f"{key}: not with an array of positions")
     shape, scale = (case.particles, case.box.dimension), case.brownian.scale
     try:
-        if file is None:
-            given = arrays["positions"]
-        else:
-            given = array_in_file(file, "positions", shape, scale)
+        given = (
+            arrays["positions"] if file is None else array_in_file(file, "positions", shape, scale)
+        )
         found = np.asarray(given, float)
     except OSError as error:
         raise CaseError(f"{key}: {EXPECTED}: {error.strerror}") from None
@@ -136,10 +132,6 @@ def columns(case: Case) -> Columns:
     return Columns(names, names, read)
 
 
-def _engine(case: Case, threads: int, measures: Sequence[str]) -> Brownians:
-    return Brownians(case, threads)
-
-
 def _files(case: Case) -> dict[str, Path]:
     file = case.brownian.positions
     return {} if file is None else {"brownian.positions": Path(file)}
@@ -155,6 +147,6 @@ METHOD = Method(
     timestep=lambda case: float(case.brownian.timestep),
     summary=summary,
     initial=InitialState(first_state, Brownians.start, arrays=("positions",), files=_files),
-    engine=_engine,
+    engine=lambda case, threads, measures: Brownians(case, threads),
     log=columns,
 )

@@ -32,11 +32,11 @@ class Brownian:
         return self
 
     def number(self, box: Box) -> int:
-        """How many particles there are."""
+        """Number of particles."""
         return round(self.density * box.volume)
 
 
 class Sections:
-    """What a case of Brownian motion has beside the sections of every case."""
+    """Sections of a case of Brownian motion beside those of every case."""
 
     brownian: Brownian = param(Brownian(), doc="the particles")

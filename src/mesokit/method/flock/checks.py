@@ -1,7 +1,8 @@
-"""What is fine alone and has no physics together."""
+"""Combinations of values that are fine alone and have no physics together."""
 
 import math
 from collections.abc import Iterator
+from itertools import chain
 
 from mesokit.case.amounts import count_text
 from mesokit.case.case import Case
@@ -18,16 +19,12 @@ LONGEST_STEP = 0.5  # of the box, in a step
 
 def check(case: Case) -> None:
     """Raise CaseError, with the key first."""
-    for found in (_birds(case), _walls(case)):
-        for message in found:
-            raise CaseError(message)
-    if case.walls:
-        for message in room(case, "birds"):
-            raise CaseError(message)
+    for message in chain(_birds(case), _walls(case)):
+        raise CaseError(message)
 
 
 def room_in_memory(case: Case) -> None:
-    """Raise CaseError where this machine cannot hold them: when a run begins, not before."""
+    """Raise CaseError if this machine cannot hold the birds: when a run begins, not before."""
     given = case.flock
     key = "density" if given.number is None else "number"
     needed = given.birds(case.box) * BYTES[case.box.dimension]
@@ -73,3 +70,5 @@ def _walls(case: Case) -> Iterator[str]:
     if case.walls and any(length != int(length) for length in case.box.size):
         yield f"box.size = {show(list(case.box.size))}: with walls, expected whole numbers of cells"
     yield from Walls().problems(case)
+    if case.walls:
+        yield from room(case, "birds")

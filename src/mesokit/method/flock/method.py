@@ -9,11 +9,11 @@ from mesokit.case.case import Case
 from mesokit.case.trajectory import Group, Kind
 from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.flock.checks import check, room_in_memory
-from mesokit.method.flock.displacement import Displacement
 from mesokit.method.flock.engine.flocks import Flocks
+from mesokit.method.flock.expected import Displacement
 from mesokit.method.flock.observe import FlockObservable
 from mesokit.method.flock.section import KEYS, Sections
-from mesokit.method.flock.start import FirstState, first_state
+from mesokit.method.flock.start import first_state
 from mesokit.method.flock.summary import summary
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.seam.method import Columns, Enclosure, InitialState, Method
@@ -44,11 +44,7 @@ def _engine(case: Case, threads: int, measures: Sequence[str]) -> Flocks:
     return Flocks(case, threads)
 
 
-def _start(engine: Flocks, state: FirstState) -> None:
-    engine.start(*state)
-
-
-def _starts(case: Case) -> Mapping[str, Path]:
+def _files(case: Case) -> Mapping[str, Path]:
     given = {key: getattr(case.flock.start, key) for key in STARTS}
     return {f"flock.start.{key}": Path(name) for key, name in given.items() if name is not None}
 
@@ -65,7 +61,11 @@ METHOD = Method(
     summary=summary,
     enclosure=Enclosure(closed_axes, solids),
     initial=InitialState(
-        first_state, _start, ("positions", "velocities"), _starts, "flock.start.run"
+        first_state,
+        lambda engine, state: engine.start(*state),
+        ("positions", "velocities"),
+        _files,
+        "flock.start.run",
     ),
     engine=_engine,
     log=columns,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from pydantic import model_validator
@@ -78,14 +79,19 @@ class Flock:
         return self
 
     def birds(self, box: Box) -> int:
-        """How many birds there are."""
+        """Number of birds."""
         if self.number is not None:
             return self.number
         return round((DENSITY if self.density is None else self.density) * box.volume)
 
 
+def ball(dimension: int, radius: float) -> float:
+    """Area of a disk or volume of a sphere."""
+    return math.pi * radius**2 if dimension == 2 else 4 / 3 * math.pi * radius**3
+
+
 class Sections:
-    """What a case of a flock has beside the sections of every case."""
+    """Sections of a case of a flock beside those of every case."""
 
     flock: Flock = param(Flock(), doc="the birds")
     walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")

@@ -1,4 +1,4 @@
-"""What birds start from: drawn, or given by arrays, files and earlier runs."""
+"""First places and headings of birds: drawn, or given by arrays, files and earlier runs."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -35,7 +35,7 @@ class FirstState(NamedTuple):
 
 
 def first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
-    """The state to start from. Raises CaseError for arrays and files that do not fit the case."""
+    """State to start from. Raises CaseError for arrays and files that do not fit the case."""
     start, found = case.flock.start, dict(arrays)
     keys = {name: name for name in ("positions", "velocities")}
     whole = [key for key in ("run", "file") if getattr(start, key) is not None]
@@ -56,47 +56,41 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
                 shape = case.particles, case.box.dimension
                 found[key] = array_in_file(getattr(start, key), key, shape, start.scale)
                 keys[key] = where
-        except MesokitError as error:
-            raise CaseError(f"{where}: {error}") from None
         except OSError as error:
             raise CaseError(f"{where}: {EXPECTED}: {error.strerror}") from None
-        except ValueError as error:
+        except (MesokitError, ValueError) as error:
             raise CaseError(f"{where}: {error}") from None
     positions, velocities = found.get("positions"), found.get("velocities")
     if velocities is not None and start.headings != "random":
         raise CaseError("flock.start.headings: not with velocities; leave it out")
     return FirstState(
-        drawn_places(case) if positions is None else _places(case, keys["positions"], positions),
-        drawn_headings(case)
+        _drawn_places(case) if positions is None else _places(case, keys["positions"], positions),
+        _drawn_headings(case)
         if velocities is None
         else _headings(case, keys["velocities"], velocities),
     )
 
 
-def drawn_places(case: Case) -> Array:
+def _drawn_places(case: Case) -> Array:
     """Places uniform in the box, outside of solids. Raises CaseError if there is no room."""
     size = tuple(float(length) for length in case.box.size)
-    counter, places = (
-        Counter(np.uint64(case.run.seed), np.uint64(0)),
-        np.zeros((case.particles, len(size))),
-    )
+    counter = Counter(np.uint64(case.run.seed), np.uint64(0))
+    places = np.zeros((case.particles, len(size)))
     left, draw = np.arange(case.particles), 0
     while len(left):
         if draw == TRIES:
             raise CaseError("wall: found no room for the birds")
         some = np.zeros((len(left), len(size)))
         scatter_places(counter, draw, size, left, some)
-        good = np.ones(len(left), bool) if not case.walls else _outside(case, some)
+        good = np.ones(len(left), bool)
+        if case.walls:
+            good = np.asarray(solids_of(case).distance(some) >= MARGIN)
         places[left[good]] = some[good]
         left, draw = left[~good], draw + 1
     return places
 
 
-def _outside(case: Case, places: Array) -> NDArray[np.bool_]:
-    return np.asarray(solids_of(case).distance(places) >= MARGIN)
-
-
-def drawn_headings(case: Case) -> Array:
+def _drawn_headings(case: Case) -> Array:
     """Headings in all directions, or all along x."""
     headings = np.zeros((case.particles, case.box.dimension))
     if case.flock.start.headings == "aligned":
@@ -158,8 +152,6 @@ def _numbers(case: Case, key: str, given: Any) -> Array:
 
 def _last_of_run(case: Case, path: str) -> tuple[Array, Array]:
     """Places and headings at the last checkpoint of an earlier run with this box and as many."""
-    from mesokit.case.case import Case
-
     directory = RunDirectory.existing(path)
     earlier = Case.from_toml(directory.case_file)
     if earlier.run.method != case.run.method:

@@ -1,4 +1,4 @@
-"""What follows from a case of a flock: derived numbers, cost, and warnings."""
+"""Derived numbers of a case of a flock, cost, and warnings."""
 
 import math
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from mesokit.case.component import show
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.solids.solids import free_volume
-from mesokit.method.flock.section import BYTES
+from mesokit.method.flock.section import BYTES, ball
 from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import Row, Summary
 
@@ -31,27 +31,19 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     looked_at = min(density * (3 * given.radius) ** d, float(case.particles))
     bird = SECONDS[d] + EACH[d] * looked_at
     seconds = case.particles * steps * bird / threads
-    memory_of = given.noise.memory(d)
-    step_length = given.speed * given.timestep
-    crowd = given.noise.crowd(d, case.particles)
+    step_length, memory_of = given.speed * given.timestep, given.noise.memory(d)
+    of_reach = f"{step_length / given.radius:.3g} of the reach"
     rows: list[Row] = [
         ("birds", f"{case.particles:,}".replace(",", " "), ""),
-        ("density", number(density, f"1/length^{case.box.dimension}"), ""),
+        ("density", number(density, f"1/length^{d}"), ""),
         ("birds in reach", number(in_reach), "others, where birds are spread at random"),
-        (
-            "length of a step",
-            number(step_length, "length"),
-            f"{step_length / given.radius:.3g} of the reach",
-        ),
+        ("length of a step", number(step_length, "length"), of_reach),
         ("order without order", number(theory.disordered_order(case.particles, d)), "chance alone"),
     ]
-    if crowd is not None:
-        both = math.isnan(crowd.many)
-        rows.append(
-            ("order if all see all", "none", "order and disorder are both stable")
-            if both
-            else ("order if all see all", number(crowd.many), "of infinitely many birds")
-        )
+    if (crowd := given.noise.crowd(d, case.particles)) is not None:
+        both = "none", "order and disorder are both stable"
+        many = both if math.isnan(crowd.many) else (number(crowd.many), "of infinitely many birds")
+        rows.append(("order if all see all", *many))
     rows += [
         ("memory of a lone bird", number(memory_of), "mean cosine of its turn in a step"),
         ("run time", duration_text(seconds), f"estimate: {threads} thread{'s' * (threads > 1)}"),
@@ -62,11 +54,6 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     warnings = [*run_warnings(case, memory, stored), *_warnings(case, in_reach)]
     numbers = {"birds": case.particles, "density": density, "birds_in_reach": in_reach}
     return Summary(tuple(rows), tuple(warnings), seconds, numbers, memory)
-
-
-def ball(dimension: int, radius: float) -> float:
-    """Area of a disk or volume of a sphere."""
-    return math.pi * radius**2 if dimension == 2 else 4 / 3 * math.pi * radius**3
 
 
 def _warnings(case: Case, in_reach: float) -> Iterator[str]:

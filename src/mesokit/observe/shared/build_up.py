@@ -1,9 +1,9 @@
-"""Whether a flow had built up when samples were taken: else its mean is not that of theory."""
+"""Caveats of flows that had not built up when samples were taken: theory is of steady flow."""
 
 import copy
 import dataclasses
 import math
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 from mesokit.case.case import Case
 from mesokit.case.describe.digits import two_digits
@@ -19,30 +19,25 @@ MUCH = 0.05  # of the speed: a missing part that is larger is told, whatever the
 DRIFTS = 5.0  # standard errors between both halves of the samples: the flow still changes
 
 
-@runtime_checkable
-class OfFlow(Protocol):
-    """An accumulator that sees how long its flow takes to build up."""
-
-    def build_up(self) -> BuildUp | None:
-        """How the flow came from rest, None where that is not known."""
-
-
 def result_of(accumulator: Accumulator, case: Case) -> Result:
-    """What an accumulator says, with comparisons marked where the flow had not built up, or where
+    """Result of an accumulator, with comparisons marked where the flow had not built up, or where
     the run is too short for error bars."""
     found = without_error(bounded(accumulator.result(), accumulator), accumulator)
     result = in_units(found, case)
     observable = next((one for one in case.observe if one.label == result.name), None)
     if observable is None:
         return result
-    length = _length(accumulator, result) * observable.every
+    runs = getattr(getattr(accumulator, "blocks", None), "series", 1)  # pooled in it
+    length = int(result.samples // runs) * observable.every  # steps
     if observable.of_built_up_flow:
         build_up, estimated = _build_up(accumulator, case)
-        early = drift = ""
+        early, short = "", False
         if build_up is not None:
-            early = _too_early(build_up, estimated, result, length, observable.in_any_flow)
-        if not (early or _is_short(build_up, length)):
-            drift = _drift(accumulator, result)
+            of_flow = [c for c in result.comparisons if not _has(c, observable.in_any_flow)]
+            early = _too_early(build_up, estimated, of_flow, length)
+            # within a relaxation time fluctuations alone can make the halves differ
+            short = build_up.had >= build_up.need and length < build_up.steps
+        drift = "" if early or short else _drift(accumulator, result)
         result = _marked(_marked(result, early, observable.in_any_flow), drift)
     steps = case.run.warmup + min(length, case.run.steps)
     heat = method_of(case).heat_caveat(case, steps)
@@ -52,56 +47,49 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
 def _marked(result: Result, note: str, but: tuple[str, ...] = ()) -> Result:
     """With a note in front of those of its comparisons, but of those with such words in their
     names, or that are not steady for another reason."""
+
+    def marked(comparison: Comparison) -> Comparison:
+        if not comparison.steady or _has(comparison, but):
+            return comparison
+        parts = comparison.note.split("; ")
+        if note.startswith(NOT_STEADY):  # error bars of a flow that changes are another matter
+            parts = [p for p in parts if p not in STEADY and not p.startswith(LOWER_BOUND)]
+        return dataclasses.replace(comparison, note="; ".join(filter(None, [note, *parts])))
+
     if not note:
         return result
-    return dataclasses.replace(
-        result,
-        comparisons=tuple(
-            c
-            if not c.steady or _has(c, but)
-            else dataclasses.replace(c, note="; ".join([note, *_of_theory(c, note)]))
-            for c in result.comparisons
-        ),
-    )
+    return dataclasses.replace(result, comparisons=tuple(map(marked, result.comparisons)))
 
 
 def _has(comparison: Comparison, words: tuple[str, ...]) -> bool:
-    """Whether any of these words are in its name."""
+    """True if any of these words are in its name."""
     return any(one in comparison.what for one in words)
 
 
-def _length(accumulator: Accumulator, result: Result) -> int:
-    """Samples of each run that is pooled in it."""
-    series = getattr(getattr(accumulator, "blocks", None), "series", 1)
-    return int(result.samples // series)
-
-
 def _build_up(accumulator: Accumulator, case: Case) -> tuple[BuildUp | None, bool]:
-    """How the flow came from rest, and whether that is estimated from the flow itself; None where
-    neither the method nor the flow gives it."""
-    method = method_of(case)
+    """How the flow came from rest, None where that is unknown, and whether that is an estimate from
+    the flow itself: the method `build_up` of an accumulator."""
+    method, of_flow = method_of(case), getattr(accumulator, "build_up", None)
     known = method.build_up(case) if method.build_up is not None else None
-    if known is None and isinstance(accumulator, OfFlow):
-        return accumulator.build_up(), True
+    if known is None and of_flow is not None:
+        return of_flow(), True
     return known, False
 
 
-def _is_short(build_up: BuildUp | None, length: int) -> bool:
-    """Whether samples began late enough, but span less than a relaxation time of the flow: then
-    fluctuations alone tell the halves apart."""
-    return build_up is not None and build_up.had >= build_up.need and length < build_up.steps
+def _too_early(build_up: BuildUp, estimated: bool, of_flow: list[Comparison], length: int) -> str:
+    """A note if samples began before the flow had built up.
 
-
-def _too_early(
-    build_up: BuildUp, estimated: bool, result: Result, length: int, but: tuple[str, ...]
-) -> str:
-    """That samples began before the flow had built up; by all numbers but those with such words in
-    their names."""
+    That is said if the missing part is more than a twentieth, or would be visible beside an error
+    bar. In a flow that builds up the error bar grows with the missing part.
+    """
     lacks = build_up.lacks(length) if length else 0.0
     enough = build_up.had >= build_up.need  # then only an error bar that is known tells more
-    of_flow = [c for c in result.comparisons if not _has(c, but)]
-    seen = [c for c in of_flow if not (enough and LOWER_BOUND in c.note)]
-    if not any(_is_off(c, lacks) for c in seen):
+    for c in of_flow:
+        missing = lacks * abs(c.measured if math.isnan(c.expected) else c.expected)
+        off = missing > MATTERS * c.error or (lacks > MUCH and missing > 0)
+        if off and not (enough and LOWER_BOUND in c.note):
+            break
+    else:
         return ""
     if enough:
         return f"{BUILDS_UP}still lacked {100 * lacks:.2g} % of its speed"
@@ -110,8 +98,8 @@ def _too_early(
 
 
 def _drift(accumulator: Accumulator, result: Result) -> str:
-    """That both halves of the samples differ by more than they scatter. A chi-square is of that
-    scatter itself, and is left out."""
+    """A note if both halves of the samples differ by more than they scatter. A chi-square measures
+    that scatter itself, and is left out."""
     blocks = getattr(accumulator, "blocks", None)
     halves = []
     for part in blocks.halves() if blocks is not None else ():
@@ -128,20 +116,3 @@ def _drift(accumulator: Accumulator, result: Result) -> str:
             early, late = (with_error(c.measured, c.error) for c in (one, other))
             return f"{NOT_STEADY}: {what} {early} in the first half, {late} in the second"
     return ""
-
-
-def _of_theory(comparison: Comparison, caveat: str) -> list[str]:
-    """What its note says beside a caveat: of what is not steady nothing of steady flow, and nothing
-    of error bars, which are another matter there."""
-    parts = [part for part in comparison.note.split("; ") if part]
-    if not caveat.startswith(NOT_STEADY):
-        return parts
-    return [one for one in parts if one not in STEADY and not one.startswith(LOWER_BOUND)]
-
-
-def _is_off(comparison: Comparison, share: float) -> bool:
-    """Whether the part that is missing is more than a twentieth, or would be seen beside the error
-    bar. In a flow that builds up the error bar grows with what is missing."""
-    expected = comparison.expected
-    missing = share * abs(comparison.measured if math.isnan(expected) else expected)
-    return missing > MATTERS * comparison.error or (share > MUCH and missing > 0)

@@ -1,4 +1,4 @@
-"""What pooled numbers take over of the notes of the runs that they are pooled from."""
+"""Caveats that pooled numbers take from the notes of their runs."""
 
 import dataclasses
 from collections.abc import Iterable, Sequence

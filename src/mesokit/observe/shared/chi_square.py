@@ -51,7 +51,7 @@ def chi_square(counts: Array, probability: Array) -> float:
 
 
 def taken(covariance: Array, probability: Array) -> float:
-    """What a conserved sum takes from the mean of chi-square, at most 1.
+    """The part of the mean of chi-square that a conserved sum takes, at most 1.
 
     `covariance` is that of each class with a term of the sum, scaled to a variance of 1.
 

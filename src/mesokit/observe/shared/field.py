@@ -1,4 +1,4 @@
-"""What maps share: two axes, and sums in few blocks of time, for a map has many bins."""
+"""Maps over two axes, with sums in few blocks of time, for a map has many bins."""
 
 from abc import abstractmethod
 from typing import Any

@@ -29,9 +29,8 @@ def mode_chi_square(
     from scipy.special import gammaincc
 
     deviation, residuals = estimate.value - expected, estimate.residuals
-    if len(residuals) < FEWEST:
-        return []
-    if not (np.isfinite(deviation).all() and np.isfinite(residuals).all()):
+    known = np.isfinite(deviation).all() and np.isfinite(residuals).all()
+    if len(residuals) < FEWEST or not known:
         return []
     if periodic:
         mode, noise = _real_fourier(deviation), _real_fourier(residuals)
@@ -39,7 +38,9 @@ def mode_chi_square(
         mode, noise = (dct(a, norm="ortho", axis=-1) for a in (deviation, residuals))
     mode, noise = mode[1:], noise[:, 1:]
     kept = _memory(noise)
-    variance = _variance(noise, per_block(estimate.weights)) * (1 + kept) / (1 - kept)
+    weights = per_block(estimate.weights)
+    blocks = weights.sum() ** 2 / (weights**2).sum()  # as if they were independent
+    variance = (noise**2).sum(axis=0) * blocks / (blocks - 1) * (1 + kept) / (1 - kept)
     if periodic:  # sine and cosine of one wave have the same variance
         pairs = len(variance) // 2 * 2
         variance[:pairs] = np.repeat(variance[:pairs].reshape(-1, 2).mean(axis=1), 2)
@@ -69,12 +70,6 @@ def _memory(noise: Array) -> Array:
     own = (np.nan_to_num(own) * blocks + 1) / (blocks - 1)
     window = [slice(max(i - BESIDE, 0), i + BESIDE + 1) for i in range(modes)]
     return np.maximum([own[near].mean() for near in window], 0.0)
-
-
-def _variance(noise: Array, weights: Array) -> Array:
-    """Of the mean over blocks (blocks, n), as if they were independent."""
-    number = weights.sum() ** 2 / (weights**2).sum()
-    return np.asarray((noise**2).sum(axis=0) * number / (number - 1))
 
 
 def _real_fourier(values: Array) -> Array:

@@ -94,7 +94,7 @@ class Origins:
 
     @property
     def series(self) -> int:
-        """How many independent series are pooled in it."""
+        """Number of independent series that are pooled in it."""
         return 1 + len(self.others)
 
     def pool(self, other: Origins) -> None:

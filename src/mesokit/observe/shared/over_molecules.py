@@ -65,7 +65,7 @@ class OwnMeans(BlockAccumulator):
 
     @property
     def number(self) -> int:
-        """How many groups there are, those of pooled runs included."""
+        """Number of groups, those of pooled runs included."""
         return len(self.sums) + sum(map(len, self._others))
 
     def error(self, combine: Array | None = None) -> Array:
@@ -138,6 +138,11 @@ class MeansOverMolecules(BlockAccumulator):
             own = np.where(error <= ROUNDING * own, ROUNDING * own, own)
         return np.where(np.isnan(error), error, np.fmax(error, own))
 
+    def total(self, weights: Array | None = None) -> tuple[float, float]:
+        """The sum of the means times weights (width,), or the only mean, and its standard error."""
+        combine = None if weights is None else weights[None]
+        return float(self.mean(combine)[0]), float(self.error(combine)[0])
+
     def caution(self) -> str:
-        """What to say of error bars that blocks of time alone give."""
+        """Note on error bars that blocks of time alone give."""
         return self.own.caution()

@@ -1,15 +1,12 @@
 """Numbers of pairs by their distance in a periodic box, and their error bars."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.observe.shared.over_molecules import OwnMeans
-from mesokit.seam.observable import State
 from mesokit.seam.result import Array
 
 
@@ -23,11 +20,9 @@ def count_pairs(one: Array, other: Array | None, box: Array, edges: Array) -> ND
     [1, 0]
     """
     first = _tree(one, box)
-    if other is None:
-        found = first.count_neighbors(first, edges, cumulative=False)
-        return np.asarray(found[1:] // 2, np.int64)
-    found = first.count_neighbors(_tree(other, box), edges, cumulative=False)
-    return np.asarray(found[1:], np.int64)
+    second = first if other is None else _tree(other, box)
+    found = first.count_neighbors(second, edges, cumulative=False)[1:]
+    return np.asarray(found // 2 if other is None else found, np.int64)
 
 
 def count_within(molecules: Array, box: Array, edges: Array) -> NDArray[np.int64]:
@@ -38,11 +33,17 @@ def count_within(molecules: Array, box: Array, edges: Array) -> NDArray[np.int64
     [1, 0]
     """
     found = np.zeros(len(edges) - 1, np.int64)
+    for distances in _within(molecules, box):
+        found += np.histogram(distances, edges)[0]
+    return found
+
+
+def _within(molecules: Array, box: Array) -> Iterator[Array]:
+    """Distances (molecules, pairs) of beads that are 1, 2, ... places apart in a molecule."""
     for apart in range(1, molecules.shape[1]):
         separation = molecules[:, apart:] - molecules[:, :-apart]
         separation -= box * np.rint(separation / box)
-        found += np.histogram(np.sqrt((separation**2).sum(axis=2)), edges)[0]
-    return found
+        yield np.sqrt((separation**2).sum(axis=2))
 
 
 def count_each(
@@ -59,13 +60,10 @@ def count_each(
     >>> between.tolist(), within.tolist()
     ([[1, 3], [1, 3]], [[1, 0], [1, 0]])
     """
-    number, bins, (_, length, d) = groups[-1] + 1, len(edges) - 1, molecules.shape
+    number, bins, d = groups[-1] + 1, len(edges) - 1, molecules.shape[2]
     within = np.zeros(number * (bins + 2), np.int64)
-    for apart in range(1, length):
-        separation = molecules[:, apart:] - molecules[:, :-apart]
-        separation -= box * np.rint(separation / box)
-        place = np.searchsorted(edges, np.sqrt((separation**2).sum(axis=2)))
-        place += groups[:, None] * (bins + 2)
+    for distances in _within(molecules, box):
+        place = np.searchsorted(edges, distances) + groups[:, None] * (bins + 2)
         within += np.bincount(place.ravel(), minlength=len(within))
     inside = within.reshape(number, -1)[:, 1:-1]
     every = _tree(molecules.reshape(-1, d), box)
@@ -81,9 +79,9 @@ def shells(edges: Array, dimension: int) -> Array:
     return np.asarray(unit * np.diff(edges**dimension))
 
 
-class OwnPairs:
+class OwnPairs(OwnMeans):
     """Pairs that each molecule makes over the run, at each distance, of molecules that are alike
-    and know nothing of one another.
+    and independent of one another.
 
     Wherever one molecule is, others are everywhere alike, so that different pairs of molecules are
     not correlated. The sum over pairs has half of the mean square that the molecules' own sums have
@@ -96,36 +94,24 @@ class OwnPairs:
     """
 
     def __init__(self, molecules: int, bins: int) -> None:
-        self.molecules, self.bins = molecules, bins
-        self.own = OwnMeans(molecules, 2 * bins)
+        super().__init__(molecules, 2 * bins)
+        self.molecules = molecules
 
-    def add(self, places: Array, box: Array, edges: Array) -> None:
+    def add_places(self, places: Array, box: Array, edges: Array) -> None:
         """Take one sample: places (molecules, length, d) of their beads."""
-        groups = self.own.group_of(np.arange(self.molecules))
+        groups = self.group_of(np.arange(self.molecules))
         between, within = count_each(places, groups, box, edges)
-        self.own.add_sums(self.molecules * np.concatenate([between / 2, within], axis=1))
+        self.add_sums(self.molecules * np.concatenate([between / 2, within], axis=1))
 
-    def state(self) -> State:
-        """All it has to remember."""
-        return self.own.state()
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.own.restore(state)
-
-    def pool(self, other: OwnPairs) -> None:
-        """Take in the molecules of an independent run: only to read from then on."""
-        self.own.pool(other.own)
-
-    def error(self, combine: Array, within: bool = True) -> Array:
+    def error_of_pairs(self, combine: Array, within: bool = True) -> Array:
         """Standard errors (n,) of linear combinations (n, bins) of the mean numbers of pairs.
 
         `within`: whether those within molecules count.
         """
         none = np.zeros_like(combine)
-        square = 2 * self.own.error(np.concatenate([combine, none], axis=1)) ** 2
+        square = 2 * self.error(np.concatenate([combine, none], axis=1)) ** 2
         if within:
-            square = square + self.own.error(np.concatenate([none, combine], axis=1)) ** 2
+            square = square + self.error(np.concatenate([none, combine], axis=1)) ** 2
         return np.asarray(np.sqrt(square))
 
 

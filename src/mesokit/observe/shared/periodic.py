@@ -1,4 +1,4 @@
-"""What observables in a box that repeats along every axis share."""
+"""Check of observables that need a box that repeats along every axis."""
 
 from mesokit.case.case import Case
 from mesokit.errors import CaseError

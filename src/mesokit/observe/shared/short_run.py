@@ -1,19 +1,14 @@
-"""Whether a run is too short for its blocks of time: then error bars are lower bounds."""
+"""Caveats of runs that are too short for their blocks of time: error bars are lower bounds."""
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from mesokit.observe.shared.caveats import FEW_SAMPLES, LOWER_BOUND
 from mesokit.seam.result import Comparison, Result
-from mesokit.statistics import (
-    FEWEST_BLOCKS,
-    FEWEST_PIECES,
-    Blocks,
-    TimeSeries,
-    correlated,
-)
+from mesokit.statistics import FEWEST_BLOCKS, FEWEST_PIECES, Blocks, TimeSeries, correlated
 
 NO_ERROR = "no error bar"
 MOST = 0.5  # of the means of an observable that may have few independent pieces
@@ -35,36 +30,42 @@ def bounded(result: Result, accumulator: Any) -> Result:
     blocks = getattr(accumulator, "blocks", None)
     if not isinstance(blocks, Blocks):
         return result
-    note, few = NOTE if unresolved(blocks) else "", _few(blocks)
-    return dataclasses.replace(
-        result,
-        comparisons=tuple(
-            _noted(c, note or (few if CHI_SQUARE in c.what or blocks.count < VERY_FEW else ""))
-            for c in result.comparisons
-        ),
-    )
+    note = NOTE if unresolved(blocks) else ""
+    few = f"{LOWER_BOUND}: of {blocks.count} {FEW_SAMPLES}" if blocks.count < SAMPLES else ""
+
+    def caveat(c: Comparison) -> str:
+        if c.lower_bound or not c.error > 0:
+            return ""
+        return note or (few if CHI_SQUARE in c.what or blocks.count < VERY_FEW else "")
+
+    return _noted(result, caveat)
 
 
 def without_error(result: Result, accumulator: Any) -> Result:
     """A result whose comparisons say why they have no error bar; counts need none."""
     blocks, rows = getattr(accumulator, "blocks", None), getattr(accumulator, "series", None)
+    note = NO_ERROR
     if isinstance(blocks, Blocks):
-        few = f"{blocks.count} sample{'s' * (blocks.count != 1)}"
-        note = f"{NO_ERROR}: of {few}" if blocks.count < FEWEST_BLOCKS else NO_ERROR
+        if blocks.count < FEWEST_BLOCKS:
+            note += f": of {blocks.count} sample{'s' * (blocks.count != 1)}"
     elif isinstance(rows, TimeSeries) and rows.series < FEWEST_BLOCKS:
         runs = "one run" if rows.series == 1 else f"{rows.series} runs"
-        note = f"{NO_ERROR}: {runs}; --seeds {FEWEST_BLOCKS} or more give one"
-    else:
-        note = NO_ERROR
-    return dataclasses.replace(
-        result,
-        comparisons=tuple(
-            dataclasses.replace(c, note="; ".join(filter(None, [c.note, note])))
-            if np.isnan(c.error) and np.isfinite(c.measured) and c.measured % 1 != 0
-            else c
-            for c in result.comparisons
-        ),
+        note += f": {runs}; --seeds {FEWEST_BLOCKS} or more give one"
+
+    def caveat(c: Comparison) -> str:
+        unknown = np.isnan(c.error) and np.isfinite(c.measured) and c.measured % 1 != 0
+        return note if unknown else ""
+
+    return _noted(result, caveat)
+
+
+def _noted(result: Result, caveat: Callable[[Comparison], str]) -> Result:
+    """With a caveat behind the note of each comparison; "" adds none."""
+    noted = (
+        dataclasses.replace(c, note="; ".join(filter(None, [c.note, caveat(c)])))
+        for c in result.comparisons
     )
+    return dataclasses.replace(result, comparisons=tuple(noted))
 
 
 def of_relaxations(times: float, runs: int = 1, of: str = "relaxation times") -> str:
@@ -79,22 +80,8 @@ def of_relaxations(times: float, runs: int = 1, of: str = "relaxation times") ->
     return f"{LOWER_BOUND}: {'each' if runs > 1 else 'the'} run has {times:.2g} {of}"
 
 
-def _noted(comparison: Comparison, note: str) -> Comparison:
-    """With a caveat of its error bar, where it has one and no such caveat."""
-    if not note or comparison.lower_bound or not comparison.error > 0:
-        return comparison
-    return dataclasses.replace(comparison, note="; ".join(filter(None, [comparison.note, note])))
-
-
-def _few(blocks: Blocks) -> str:
-    """What to say of a sum over samples that are few, nothing if there are many."""
-    if blocks.count >= SAMPLES:
-        return ""
-    return f"{LOWER_BOUND}: of {blocks.count} {FEW_SAMPLES}"
-
-
 def unresolved(blocks: Blocks) -> bool:
-    """Whether most of its means have few independent pieces.
+    """True if most of the means have few independent pieces.
 
     >>> noise = np.random.default_rng(1).normal(size=1024)
     >>> series = Blocks(), Blocks()

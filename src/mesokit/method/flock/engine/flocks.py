@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.geometry.solids.solids import Solids, solids_of
+from mesokit.geometry.solids.solids import solids_of
 from mesokit.kernels.packing import Packing
 from mesokit.loops.threads import Threads
 from mesokit.method.flock.engine.memory import Physics, axes_of, make
@@ -31,9 +31,8 @@ class Flocks:
         given, size = case.flock, case.box.size
         self.n, self.dimension = given.birds(case.box), case.box.dimension
         self.box, self.speed, self.timestep = np.array(size, float), given.speed, given.timestep
-        self.solids: Solids | None = (
-            solids_of(case) if case.walls else None
-        )  # kernels hold only the address of its tables
+        # kernels hold only the address of the tables of solids
+        self.solids = solids_of(case) if case.walls else None
         shut = closed_axes(case.walls)
         closed = [axis in shut for axis in case.box.axes]
         axes = axes_of(size, closed, max(side or 0.0, given.radius), self.n)
@@ -92,20 +91,16 @@ class Flocks:
 
     def positions(self, ids: Integers | None = None, unwrapped: bool = False) -> Array:
         """Places (n, d), in the box or where the birds have gone to."""
-        places = self._by_number(self.flock.birds.places)
-        if unwrapped:
-            places += self._by_number(self.flock.birds.images) * self.box
-        return places if ids is None else places[ids]
+        places = self._by_number(self.flock.birds.places, ids)
+        return places + self.images(ids) * self.box if unwrapped else places
 
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
         """Image counts (n, d) of the birds."""
-        images = self._by_number(self.flock.birds.images)
-        return images if ids is None else images[ids]
+        return self._by_number(self.flock.birds.images, ids)
 
     def headings(self, ids: Integers | None = None) -> Array:
         """Unit vectors (n, d) along which the birds head."""
-        headings = self._by_number(self.flock.birds.headings)
-        return headings if ids is None else headings[ids]
+        return self._by_number(self.flock.birds.headings, ids)
 
     def velocities(self, ids: Integers | None = None) -> Array:
         """Heading times speed (n, d)."""
@@ -131,7 +126,7 @@ class Flocks:
         self._fill(state["places"], state["headings"], state["images"])
         self.step = int(state["step"])
 
-    def _by_number(self, arrays: NDArray[Any]) -> NDArray[Any]:
+    def _by_number(self, arrays: NDArray[Any], ids: Integers | None = None) -> NDArray[Any]:
         found = np.empty(arrays.shape[:0:-1], arrays.dtype)  # (2, d, n) to (n, d)
         found[self.flock.birds.numbers[self.current]] = arrays[self.current].T
-        return found
+        return found if ids is None else found[ids]

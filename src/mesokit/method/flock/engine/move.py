@@ -5,13 +5,7 @@ overlap, and does several birds at once.
 """
 
 from mesokit.geometry.protocol import Nothing, exposed, first_hit, happens, homed, settled, unmet
-from mesokit.geometry.solids.bodies import (
-    RULE,
-    SLIP,
-    Bodies,
-    part_normal,
-    surface_number,
-)
+from mesokit.geometry.solids.bodies import RULE, SLIP, Bodies, part_normal, surface_number
 from mesokit.geometry.solids.contact import MARGIN
 from mesokit.kernels.kernel import inner
 from mesokit.method.flock.engine.memory import HEADING, PULL, STRIP, has_cohesion, past, sum_rows

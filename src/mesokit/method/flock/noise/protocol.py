@@ -1,4 +1,4 @@
-"""What a noise answers: where a bird turns, given the sum of the headings around it.
+"""Seam of noises: the turn of a bird, given the sum of the headings around it.
 
 The first argument is the noise's NamedTuple of parameters; its class picks the implementation.
 """

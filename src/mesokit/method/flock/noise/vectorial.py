@@ -5,14 +5,7 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 from mesokit.case.component import component, param, tag
-from mesokit.method.flock.noise.protocol import (
-    TURN,
-    Noise,
-    counted,
-    direction,
-    turned,
-    unit_vector,
-)
+from mesokit.method.flock.noise.protocol import TURN, Noise, counted, direction, turned, unit_vector
 from mesokit.scalar.random import unit, words
 from mesokit.scalar.vector import added_scaled
 from mesokit.theory.heading_memory import vectorial_memory

@@ -1,4 +1,4 @@
-"""What is measured of a flock. A new observable is a file here."""
+"""Observables of flocks. A new one is a file here."""
 
 from mesokit.case.registry import parts_in
 from mesokit.method.flock.observe.protocol import FlockObservable

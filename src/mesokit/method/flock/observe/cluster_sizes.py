@@ -1,26 +1,21 @@
 """Clusters: birds that are in reach of one another, directly or through others."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.method.flock.observe.protocol import FlockObservable
+from mesokit.method.flock.observe.protocol import FlockObservable, RunningFlock
+from mesokit.method.flock.section import ball
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.flock.engine.flocks import Flocks
-    from mesokit.seam.engine import Array
 
 MOST_PAIRS = 5e7  # in one sample: more take gigabytes
 
@@ -33,6 +28,9 @@ class ClusterSizes(FlockObservable):
     """
 
     quantity: Literal["cluster-sizes"] = tag("cluster-sizes")
+    drawing = "clusters"
+    value_label = "share of the birds in clusters of this size and up to twice as large"
+    units: ClassVar[dict[str, str]] = {"size": ""}
     distance: float | None = param(
         None, doc="birds that are as near are linked (flock.radius unless said)", unit="a", gt=0
     )
@@ -46,9 +44,8 @@ class ClusterSizes(FlockObservable):
                 f"distance = {show(near)}: expected less than half of the box, "
                 f"{0.5 * min(case.box.size):.4g}"
             )
-        d, volume = case.box.dimension, math.prod(case.box.size)
-        ball = math.pi * near**2 if d == 2 else 4 / 3 * math.pi * near**3
-        pairs = 0.5 * case.particles**2 * ball / volume
+        reached = ball(case.box.dimension, near)
+        pairs = 0.5 * case.particles**2 * reached / math.prod(case.box.size)
         if pairs > MOST_PAIRS:
             raise CaseError(
                 f"distance = {show(near)}: some {pairs:.2g} pairs of birds in each sample; "
@@ -64,16 +61,16 @@ class ClusterSizes(FlockObservable):
 class ClusterSizesAccumulator(BlockAccumulator):
     """Block averages of the shares, the mean size and the largest."""
 
-    def __init__(self, observable: ClusterSizes, case: Case) -> None:
-        self.case, self.name, self.near = case, observable.label, observable.near(case)
-        shut = closed_axes(case.walls)
+    def prepare(self) -> None:
+        box, shut = self.case.box, closed_axes(self.case.walls)
+        self.near = self.observable.near(self.case)
         self.around = np.array(
-            [0.0 if a in shut else n for a, n in zip(case.box.axes, case.box.size, strict=True)]
+            [0.0 if a in shut else n for a, n in zip(box.axes, box.size, strict=True)]
         )
-        self.bins = case.particles.bit_length()
+        self.bins = self.case.particles.bit_length()
         self.blocks = Blocks(self.bins + 2)
 
-    def observe(self, engine: Flocks) -> None:
+    def observe(self, engine: RunningFlock) -> None:
         sizes = clusters(engine.positions(), self.near, self.around)
         number = self.case.particles
         of_size = np.floor(np.log2(sizes) + 1e-9).astype(int)
@@ -82,36 +79,22 @@ class ClusterSizesAccumulator(BlockAccumulator):
         self.blocks.add(np.concatenate([share, [mean, sizes.max() / number]]))
 
     def result(self) -> Result:
-        """Shares of the birds."""
-        mean, error = self.blocks.mean(), self.blocks.error()
-        return Result(
-            quantity="cluster-sizes",
-            drawing="clusters",
-            name=self.name,
-            x={"size": 2.0 ** np.arange(self.bins)},
-            value=mean[: self.bins],
-            error=error[: self.bins],
-            label="share of the birds in clusters of this size and up to twice as large",
-            units={"value": "", "size": ""},
-            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
-            samples=self.blocks.count,
+        """Shares of the birds; the mean size of the cluster of a bird, and the largest cluster."""
+        mean, error, means = self.blocks.mean(), self.blocks.error(), of_mean(self.blocks)
+        rows = (-2, "mean size of the cluster of a bird"), (-1, "share of the largest")
+        one = np.eye(self.bins + 2)
+        return self.report(
+            {"size": 2.0 ** np.arange(self.bins)},
+            (mean[: self.bins], error[: self.bins]),
+            (
+                Comparison(what, *means.scalar(means.value[row], one[row]), note="no theory")
+                for row, what in rows
+            ),
         )
-
-    def comparisons(self) -> list[Comparison]:
-        """The mean size of the cluster of a bird, and the largest cluster."""
-        means = of_mean(self.blocks)
-        found = []
-        for row, what in ((-2, "mean size of the cluster of a bird"), (-1, "share of the largest")):
-            gradient = np.zeros(self.bins + 2)
-            gradient[row] = 1.0
-            found.append(
-                Comparison(what, *means.scalar(float(means.value[row]), gradient), note="no theory")
-            )
-        return found
 
 
 def clusters(places: Array, near: float, around: Array) -> NDArray[np.int64]:
-    """How many places there are in each cluster of those linked, in a box that is periodic along
+    """Number of places in each cluster of those linked, in a box that is periodic along
     axes with a length in `around`.
 
     >>> clusters(np.array([[0.1, 1], [0.9, 1], [3.5, 1], [2, 3]]), 1.0, np.array([4.0, 0])).tolist()

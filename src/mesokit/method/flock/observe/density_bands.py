@@ -1,26 +1,22 @@
 """Bands: density and order along the direction in which a flock flies."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Iterator
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
-from mesokit.method.flock.observe.protocol import FlockObservable, blind, mean_heading, open_box
+from mesokit.method.flock.expected import at_random
+from mesokit.method.flock.observe.protocol import FlockObservable, RunningFlock
 from mesokit.seam.estimate import of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.flock.engine.flocks import Flocks
-    from mesokit.seam.engine import Array
 
 MOST_BINS = 2**16
 WAVES = 8  # the longest, that tell where the crest is
@@ -38,13 +34,15 @@ class DensityBands(FlockObservable):
     """
 
     quantity: Literal["density-bands"] = tag("density-bands")
+    among_walls: ClassVar[bool] = False
+    drawing, value_label = "bands", "density over its mean, heading"
+    units: ClassVar[dict[str, str]] = {"along": "a", "of": ""}
     axis: Axis | None = param(None, doc="axis of the profile (nearest to the heading unless said)")
     bins: int = param(64, doc="bins over the length of the box", ge=4, le=MOST_BINS)
 
     def check(self, case: Case) -> None:
         """Raise CaseError among walls, and in boxes of unequal sides without an axis."""
         super().check(case)
-        open_box(case, "quantity = 'density-bands'")
         if self.axis is not None:
             case.box.index(self.axis)
         elif len(set(case.box.size)) > 1:
@@ -58,17 +56,17 @@ class DensityBands(FlockObservable):
 class DensityBandsAccumulator(BlockAccumulator):
     """Block averages of number and heading in each bin, and of the longest waves."""
 
-    def __init__(self, observable: DensityBands, case: Case) -> None:
-        self.case, self.name, self.bins = case, observable.label, observable.bins
-        self.axis = None if observable.axis is None else AXES.index(observable.axis)
-        self.length = float(case.box.size[self.axis or 0])
+    def prepare(self) -> None:
+        axis, self.bins = self.observable.axis, self.observable.bins
+        self.axis = None if axis is None else AXES.index(axis)
+        self.length = float(self.case.box.size[self.axis or 0])
         self.blocks = Blocks(2 * self.bins + 1)
         wave = np.arange(1, WAVES + 1)[:, None]
         self.waves = np.exp(-2j * np.pi * wave * np.arange(FINE) / FINE)
 
-    def observe(self, engine: Flocks) -> None:
+    def observe(self, engine: RunningFlock) -> None:
         headings = engine.headings()
-        _, mean = mean_heading(headings)
+        mean = headings.mean(axis=0)
         axis = int(np.argmax(np.abs(mean))) if self.axis is None else self.axis
         sign = -1.0 if mean[axis] < 0 else 1.0
         place = sign * engine.positions()[:, axis] / self.length
@@ -91,40 +89,25 @@ class DensityBandsAccumulator(BlockAccumulator):
         return found
 
     def result(self) -> Result:
-        """Density over its mean, and the mean heading along the axis."""
-        n, case = self.bins, self.case
-        each = case.particles / n
+        """Density over its mean and the mean heading along the axis; the structure factor."""
+        n, number = self.bins, self.case.particles
         sums, _ = self.blocks.sums()
         with np.errstate(invalid="ignore", divide="ignore"):
-            density = of_mean(self.blocks)
+            means = of_mean(self.blocks)
             order = of_ratio(sums[:, n : 2 * n], sums[:, :n])
-            value = np.stack([density.value[:n] / each, order.value], axis=1)
-            error = np.stack([density.error[:n] / each, order.error], axis=1)
-        return Result(
-            quantity="density-bands",
-            drawing="bands",
-            name=self.name,
-            x={
-                "along": (np.arange(n) + 0.5) / n * self.length,
-                "of": np.array(["density", "heading"]),
-            },
-            value=value,
-            error=error,
-            label="density over its mean, heading",
-            units={"value": "", "along": "a", "of": ""},
-            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
-            samples=self.blocks.count,
-        )
+            value = np.stack([means.value[:n] / (number / n), order.value], axis=1)
+            error = np.stack([means.error[:n] / (number / n), order.error], axis=1)
 
-    def comparisons(self) -> list[Comparison]:
-        """N times the mean square of the modes: 1 for places at random."""
-        means, number = of_mean(self.blocks), self.case.particles
-        gradient = np.zeros(2 * self.bins + 1)
-        gradient[-1] = number
-        noise = self.case.flock.noise
-        random = blind(noise, self.case.box.dimension) and self.case.flock.cohesion is None
-        measured = means.scalar(number * float(means.value[-1]), gradient)
-        note = "1 for places at random"
-        what = f"structure factor of the {WAVES} longest waves"
-        # without order the axis follows chance, which does not know the places
-        return [Comparison(what, *measured, 1.0 if random else math.nan, "", note)]
+        def comparisons() -> Iterator[Comparison]:
+            """N times the mean square of the modes: 1 for places at random."""
+            measured = means.scalar(number * float(means.value[-1]), number * np.eye(2 * n + 1)[-1])
+            what = f"structure factor of the {WAVES} longest waves"
+            # without order the axis follows chance, which does not depend on the places
+            expected = 1.0 if at_random(self.case) else math.nan
+            yield Comparison(what, *measured, expected, "", "1 for places at random")
+
+        return self.report(
+            {"along": (np.arange(n) + 0.5) / n * self.length, "of": ["density", "heading"]},
+            (value, error),
+            comparisons(),
+        )

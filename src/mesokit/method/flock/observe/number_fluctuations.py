@@ -1,41 +1,26 @@
-"""How much the number of birds in a part of the box fluctuates."""
-
-from __future__ import annotations
+"""Fluctuations of the number of birds in a part of the box."""
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
-from mesokit.method.flock.observe.protocol import (
-    FlockObservable,
-    blind,
-    mean_heading,
-    open_box,
-    within,
-)
+from mesokit.method.flock.expected import giant_exponent, number_exponent
+from mesokit.method.flock.observe.protocol import FlockObservable, RunningFlock
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of, pack
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.flock.engine.flocks import Flocks
-    from mesokit.seam.engine import Array
 
 LARGEST = 0.25  # side of the largest squares unless said, in the shortest length of the box
 FITTED = 4  # of the largest, whose exponent is fitted
 FEWEST = 3  # sides for an exponent
-ORDERED = 0.8  # exponent of large ordered flocks in 2D
-IN_ORDER = 0.5  # polar order from which a flock is ordered
-AT_RANDOM = 1.5  # times the order of directions at random, up to which it is disordered
 MOST = 2**24  # squares
 
 
@@ -49,6 +34,9 @@ class NumberFluctuations(FlockObservable):
     """
 
     quantity: Literal["number-fluctuations"] = tag("number-fluctuations")
+    among_walls: ClassVar[bool] = False
+    drawing, value_label = "number fluctuations", "standard deviation of the number"
+    units: ClassVar[dict[str, str]] = {"mean number": ""}
     sides: Either[None, float] = param(
         None,
         doc="sides of the squares (1, 2, 4, ... times the reach of sight, up to a quarter of the "
@@ -68,10 +56,13 @@ class NumberFluctuations(FlockObservable):
     def check(self, case: Case) -> None:
         """Raise CaseError among walls, and for sides that are longer than the box."""
         super().check(case)
-        open_box(case, "quantity = 'number-fluctuations'")
         sides = self.all_sides(case)
         if self.sides is not None:
-            within(sides, 1e-6 * min(case.box.size), float(min(case.box.size)), "sides")
+            least, most = 1e-6 * min(case.box.size), float(min(case.box.size))
+            if not least <= sides[0] <= sides[-1] <= most:
+                raise CaseError(f"sides = {list(sides)}: expected from {least:.4g} to {most:.4g}")
+            if len(set(sides)) < len(sides):
+                raise CaseError(f"sides = {list(sides)}: expected each once")
         number = math.prod(int(length / sides[0]) for length in case.box.size)
         if number > MOST:
             raise CaseError(
@@ -85,20 +76,20 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "order")
 
-    def __init__(self, observable: NumberFluctuations, case: Case) -> None:
-        self.case, self.name = case, observable.label
-        self.sides = observable.all_sides(case)
-        self.size = np.array(case.box.size, float)
-        self.mean = case.particles * np.array(self.sides) ** len(self.size) / self.size.prod()
+    def prepare(self) -> None:
+        self.sides = self.observable.all_sides(self.case)
+        self.size = np.array(self.case.box.size, float)
+        sides, d = np.array(self.sides), len(self.size)
+        self.mean = self.case.particles * sides**d / self.size.prod()
         self.blocks, self.order = Blocks(len(self.sides)), Blocks()
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`, in which earlier versions had no order."""
         super().restore(pack(order=self.order) | dict(state))
 
-    def observe(self, engine: Flocks) -> None:
+    def observe(self, engine: RunningFlock) -> None:
         places = engine.positions()
-        self.order.add(mean_heading(engine.headings())[0])
+        self.order.add(float(np.linalg.norm(engine.headings().mean(axis=0))))
         self.blocks.add(
             [
                 ((counts_in_squares(places, side, self.size) - mean) ** 2).mean()
@@ -108,78 +99,42 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """Standard deviations."""
-        variance = of_mean(self.blocks)
+        variance, order = of_mean(self.blocks), float(self.order.mean())
         with np.errstate(invalid="ignore", divide="ignore"):
             value = np.sqrt(variance.value)
             error = variance.error / (2 * value)
-        # birds at random: a fixed number of them is spread over the box
-        poisson = np.sqrt(self.mean * (1 - self.mean / self.case.particles))
-        found = self.comparisons() if self.blocks.count and len(self.sides) >= FEWEST else []
-        return Result(
-            quantity="number-fluctuations",
-            drawing="number fluctuations",
-            name=self.name,
-            x={"mean number": self.mean},
-            value=value,
-            error=error,
-            label="standard deviation of the number",
-            units={"value": "", "mean number": ""},
-            expected=poisson,
+        return self.report(
+            {"mean number": self.mean},
+            (value, error),
+            [self.exponent()] if len(self.sides) >= FEWEST else [],
+            # birds at random: a fixed number of them is spread over the box
+            expected=np.sqrt(self.mean * (1 - self.mean / self.case.particles)),
             theory="birds at random",
-            comparisons=tuple(found),
-            samples=self.blocks.count,
-            extra={"sides": np.array(self.sides), "guide": self.giant},
+            extra={"sides": np.array(self.sides), "guide": giant_exponent(self.case, order)},
         )
 
-    @property
-    def random(self) -> bool:
-        """Whether birds fly at random."""
-        flock = self.case.flock
-        return blind(flock.noise, self.case.box.dimension) and flock.cohesion is None
-
-    @property
-    def giant(self) -> float:
-        """The exponent of large ordered flocks in 2D, nan where this is none."""
-        ordered = not self.random and float(self.order.mean()) >= IN_ORDER
-        return ORDERED if ordered and self.case.box.dimension == 2 else math.nan
-
-    @property
-    def disordered(self) -> bool:
-        """Whether the order is about as small as that of directions at random."""
-        chance = theory.disordered_order(self.case.particles, self.case.box.dimension)
-        return float(self.order.mean()) <= AT_RANDOM * chance
-
-    def comparisons(self) -> list[Comparison]:
-        """The exponent: slope of the logarithms, by least squares."""
+    def exponent(self) -> Comparison | None:
+        """Slope of the logarithms, by least squares; None where a variance is 0."""
         variance, case = of_mean(self.blocks), self.case
         use = np.arange(len(self.sides)) >= len(self.sides) - FITTED
         x = np.log(self.mean[use]) - np.log(self.mean[use]).mean()
         weight = np.zeros(len(self.sides))
         weight[use] = x / (x**2).sum()
         if not (variance.value[use] > 0).all():
-            return []
+            return None
         at = np.where(use, variance.value, 1.0)
         slope = 0.5 * float(weight @ np.log(at))
         # of birds at random, a fixed number of which is in the box
         share = np.minimum(self.mean / case.particles, 1.0)
         with np.errstate(divide="ignore"):
             root = 0.5 * float(weight[use] @ np.log(self.mean * (1 - share))[use])
-        order = f"polar order {float(self.order.mean()):.2g}"
-        if self.random:
-            expected, note = root, "birds at random"
-        elif self.disordered:
-            expected, note = root, f"approximate: disordered flocks, {order}"
-        elif math.isfinite(self.giant):
-            expected = self.giant
-            note = f"approximate: large ordered flocks (Toner and Tu 1995), {order}"
-        else:
-            expected, note = math.nan, f"no theory for this flock, {order}"
         measured = variance.scalar(slope, 0.5 * weight / at)
-        return [Comparison("exponent of number fluctuations", *measured, expected, "", note)]
+        expected, note = number_exponent(case, float(self.order.mean()), root)
+        return Comparison("exponent of number fluctuations", *measured, expected, "", note)
 
 
 def counts_in_squares(places: Array, side: float, size: Array) -> Array:
-    """How many places lie in each of the whole squares of a side that fit the box."""
+    """Number of places in each of the whole squares of a side that fit the box."""
     many = np.floor(size / side * (1 + 1e-12)).astype(int)
     bins = np.floor(places / side).astype(int)
     inside = (bins < many).all(axis=1)

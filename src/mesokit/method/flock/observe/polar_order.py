@@ -1,30 +1,18 @@
 """Polar order: how far birds fly the same way, its fluctuations, and the mean direction."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+from collections.abc import Iterator
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from mesokit import theory
 from mesokit.case.component import component, tag
-from mesokit.method.flock.observe.protocol import (
-    FlockObservable,
-    all_see_all,
-    blind,
-    mean_heading,
-)
+from mesokit.method.flock.expected import KnownOrder, polar_order
+from mesokit.method.flock.observe.protocol import FlockObservable, RunningFlock
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.flock.engine.flocks import Flocks
-
-MANY = 30  # birds, from which on their sum at random is as good as normal
 
 
 @component
@@ -36,15 +24,8 @@ class PolarOrder(FlockObservable):
     """
 
     quantity: Literal["polar-order"] = tag("polar-order")
-
-
-class Known(NamedTuple):
-    """Mean, mean square and Binder cumulant by theory, nan where it has none, and what it says."""
-
-    order: float = math.nan
-    square: float = math.nan
-    cumulant: float = math.nan
-    why: str = ""
+    drawing, value_label = "order", "polar order"
+    units: ClassVar[dict[str, str]] = {"time": "tau"}
 
 
 @accumulator_of(PolarOrder)
@@ -53,33 +34,26 @@ class PolarOrderAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series")
 
-    def __init__(self, observable: PolarOrder, case: Case) -> None:
-        self.case, self.name = case, observable.label
-        self.blocks, self.series = Blocks(3), TimeSeries(1 + case.box.dimension)
+    def prepare(self) -> None:
+        self.blocks, self.series = Blocks(3), TimeSeries(1 + self.case.box.dimension)
 
-    def observe(self, engine: Flocks) -> None:
-        order, mean = mean_heading(engine.headings())
+    def observe(self, engine: RunningFlock) -> None:
+        mean = engine.headings().mean(axis=0)
+        order = float(np.linalg.norm(mean))
         self.blocks.add([order, order**2, order**4])
         self.series.add(engine.time, [order, *mean])
 
     def result(self) -> Result:
         """The order in time, whose points are no means of their own: the error is nan."""
-        rows = self.series.values()
-        found = self.comparisons() if self.blocks.count else []
-        level = found[0].expected if found else math.nan
-        return Result(
-            quantity="polar-order",
-            drawing="order",
-            name=self.name,
-            x={"time": self.series.time()},
-            value=rows[:, 0],
-            error=np.full(len(rows), np.nan),
-            label="polar order",
-            units={"value": "", "time": "tau"},
-            expected=None if math.isnan(level) else np.full(len(rows), level),
-            theory="" if math.isnan(level) else self.known().why,
-            comparisons=tuple(found),
-            samples=self.blocks.count,
+        rows, known = self.series.values(), polar_order(self.case)
+        found = list(self.comparisons(known)) if self.blocks.count else []
+        theory = not math.isnan(known.order) and self.blocks.count > 0
+        return self.report(
+            {"time": self.series.time()},
+            rows[:, 0],
+            found,
+            expected=np.full(len(rows), known.order) if theory else None,
+            theory=known.note if theory else "",
             extra={
                 "heading": rows[:, 1:],
                 "mean": found[0].measured if found else math.nan,
@@ -87,55 +61,20 @@ class PolarOrderAccumulator(BlockAccumulator):
             },
         )
 
-    def comparisons(self) -> list[Comparison]:
+    def comparisons(self, known: KnownOrder) -> Iterator[Comparison]:
         """Mean, mean square, Binder cumulant and susceptibility."""
-        number = self.case.particles
-        means = of_mean(self.blocks)
+        number, means, note = self.case.particles, of_mean(self.blocks), known.note
         order, square, fourth = map(float, means.value)
+        first, second, _ = np.eye(3)
+        measured = means.scalar(order, first)
+        yield Comparison("mean polar order", *measured, known.order, "", note)
+        measured = means.scalar(square, second)
+        yield Comparison("mean square polar order", *measured, known.square, "", note)
         cumulant = 1 - fourth / (3 * square**2) if square > 0 else math.nan
         slope = np.array([0.0, 2 * fourth / (3 * square**3), -1 / (3 * square**2)])
-        known = self.known()
-        only = np.eye(3)
-        return [
-            Comparison(
-                "mean polar order", *means.scalar(order, only[0]), known.order, "", known.why
-            ),
-            Comparison(
-                "mean square polar order",
-                *means.scalar(square, only[1]),
-                known.square,
-                "",
-                known.why,
-            ),
-            Comparison(
-                "Binder cumulant", *means.scalar(cumulant, slope), known.cumulant, "", known.why
-            ),
-            Comparison(
-                "susceptibility",
-                *means.scalar(
-                    number * (square - order**2), number * np.array([-2 * order, 1.0, 0])
-                ),
-                note=f"number of birds times the variance of the order, {number} birds",
-            ),
-        ]
-
-    def known(self) -> Known:
-        """What theory knows."""
-        case, d = self.case, self.case.box.dimension
-        noise, number = case.flock.noise, case.particles
-        if case.flock.cohesion is not None:
-            return Known(why="no theory with cohesion")
-        if blind(noise, d):
-            square, why = 1 / number, "directions at random"
-            if number < MANY:
-                return Known(square=square, why=why)
-            order, cumulant = theory.disordered_order(number, d), theory.disordered_binder(d)
-            return Known(order, square, cumulant, why)
-        crowd = noise.crowd(d, number) if all_see_all(case) else None
-        if crowd is None:
-            return Known(why="no analytical theory")
-        if math.isnan(crowd.many):
-            return Known(why="all see all: order and disorder are both stable")
-        if math.isnan(crowd.mean_square):
-            return Known(why=f"all see all: {crowd.many:.4g} of many birds, these are too few")
-        return Known(crowd.mean, crowd.mean_square, why="all see all")
+        measured = means.scalar(cumulant, slope)
+        yield Comparison("Binder cumulant", *measured, known.cumulant, "", note)
+        slope = number * np.array([-2 * order, 1.0, 0])
+        measured = means.scalar(number * (square - order**2), slope)
+        note = f"number of birds times the variance of the order, {number} birds"
+        yield Comparison("susceptibility", *measured, note=note)

@@ -1,6 +1,7 @@
 """Storage and loss modulus at the frequency of an oscillating shear."""
 
 import math
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -33,6 +34,8 @@ class DynamicModuli(Observable):
 
     quantity: Literal["dynamic-moduli"] = tag("dynamic-moduli")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
+    drawing = "moduli"
+    value_label = "modulus"
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
 
     def check(self, case: Case) -> None:
@@ -57,8 +60,8 @@ class DynamicModuliAccumulator(BlockAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("blocks", "squares", "products", "began", "samples")
     added: ClassVar[tuple[str, ...]] = ("samples",)
 
-    def __init__(self, observable: DynamicModuli, case: Case) -> None:
-        self.case, self.name = case, observable.label
+    def prepare(self) -> None:
+        case = self.case
         oscillation = case.box.oscillation
         assert oscillation is not None
         self.amplitude, self.frequency = oscillation.rate, oscillation.frequency
@@ -92,21 +95,14 @@ class DynamicModuliAccumulator(BlockAccumulator):
         self.squares[:], self.products[:] = 0.0, 0.0
 
     def result(self) -> Result:
-        """Both moduli by parts."""
-        return Result(
-            quantity="dynamic-moduli",
-            drawing="moduli",
-            name=self.name,
-            x={"part": np.array([*self.parts, "total"]), "modulus": np.array(list(MODULI))},
-            value=self.blocks.mean(),
-            error=self.blocks.error(),
-            label="modulus",
+        newtonian = self.case.fluid.molecule is None
+        return self.report(
+            {"part": [*self.parts, "total"], "modulus": list(MODULI)},
+            self.blocks,
+            self.comparisons(),
             units={"value": UNIT[self.case.box.dimension]},
             expected=self.expected(),
-            theory="Newtonian fluid, molecular chaos"
-            if self.case.fluid.molecule is None
-            else ROUSE,
-            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
+            theory="Newtonian fluid, molecular chaos" if newtonian else ROUSE,
             samples=int(self.samples[0]),
             extra={"frequency": self.frequency},
         )
@@ -137,31 +133,19 @@ class DynamicModuliAccumulator(BlockAccumulator):
             expected[2] = expected[0] + expected[1]
         return expected
 
-    def comparisons(self) -> list[Comparison]:
+    def comparisons(self) -> Iterator[Comparison]:
         """Totals, and the viscosity that the loss modulus is."""
-        mean, error, expected = self.blocks.mean(), self.blocks.error(), self.expected()
-        unit = UNIT[self.case.box.dimension]
-        notes = [self.note(k) for k in range(len(MODULI))]
-        found = [
-            Comparison(
-                f"{name} modulus", float(mean[-1, k]), float(error[-1, k]), float(expected[-1, k]),
-                unit, notes[k],
-            )
-            for k, name in enumerate(MODULI.values())
-        ]  # fmt: skip
+        if not self.blocks.count:
+            return
+        mean, error, expected = self.blocks.mean()[-1], self.blocks.error()[-1], self.expected()[-1]
+        unit, notes = UNIT[self.case.box.dimension], [self.note(k) for k in range(len(MODULI))]
+        for k, name in enumerate(MODULI.values()):
+            yield Comparison(f"{name} modulus", mean[k], error[k], expected[k], unit, notes[k])
         if self.case.fluid.molecule is None:
             scale = setting.mass_density(self.case) * self.frequency
-            found.append(
-                Comparison(
-                    "viscosity from the loss modulus",
-                    float(mean[-1, 1] / scale),
-                    float(error[-1, 1] / scale),
-                    float(expected[-1, 1] / scale),
-                    "a^2/tau",
-                    notes[1],
-                )
-            )
-        return found
+            eta, spread, known = mean[1] / scale, error[1] / scale, expected[1] / scale
+            what = "viscosity from the loss modulus"
+            yield Comparison(what, eta, spread, known, "a^2/tau", notes[1])
 
     def note(self, k: int) -> str:
         """Why theory is off for one of both moduli by more than its error bar, "" if it is not."""

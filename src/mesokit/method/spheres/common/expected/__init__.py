@@ -1,1 +1,1 @@
-"""What theory expects of spheres, whatever method moves them."""
+"""Theory of spheres that both methods share."""

@@ -1,4 +1,4 @@
-"""What the methods of spheres answer to observables that they share."""
+"""Theory of both methods of spheres, by observable."""
 
 from collections.abc import Callable
 from functools import partial

@@ -1,4 +1,4 @@
-"""What is known of the temperature of spheres in time."""
+"""Theory of the temperature of spheres in time."""
 
 import math
 from typing import NamedTuple
@@ -20,7 +20,7 @@ class Cooling(NamedTuple):
 
 
 def uniform(case: Case) -> bool:
-    """Whether it may be a uniform gas of equal spheres, with nothing beside them."""
+    """True for a uniform gas of equal spheres, without walls and gravity."""
     section = case.spheres
     alike = len(section.kinds) == 1 and section.kinds[0].spread == 0
     return alike and not case.walls and not section.gravity

@@ -17,13 +17,13 @@ class Equilibrium(NamedTuple):
 
 
 def surfaces(case: Case) -> Iterator[Surface]:
-    """Those of all walls."""
+    """Surfaces of all walls."""
     for wall in case.walls:
         yield from wall.surfaces().values()
 
 
 def still_walls(case: Case) -> bool:
-    """Whether no wall moves or vibrates."""
+    """True if no wall moves or vibrates."""
     return not any(
         surface.moves or (surface.contact is not None and surface.contact.amplitude > 0)
         for surface in surfaces(case)

@@ -1,20 +1,16 @@
-"""What is known of the neighbours of spheres, whatever method moves them."""
-
-from __future__ import annotations
+"""Theory of the neighbours of spheres."""
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.groups import ids_of_kind, refuse_molecules
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.observe.radial_distribution import Group
+from mesokit.observe.radial_distribution import Neighbours
 
 
 class _Spheres(NamedTuple):
@@ -29,9 +25,8 @@ class _Spheres(NamedTuple):
         return self.first + np.arange(self.number)[:, None]
 
 
-class NeighboursOfSpheres:
-    """No theory, as spheres that touch are not independent. Selected spheres, their size;
-    `diameter`, `value` and `note` are those at contact."""
+class NeighboursOfSpheres(Neighbours):
+    """No theory, as spheres that touch are not independent, and all spheres are looked at."""
 
     answers = "radial-distribution"
 
@@ -40,26 +35,9 @@ class NeighboursOfSpheres:
         self.size = float(case.spheres.largest(case.box))
         self.diameter, self.value, self.note = math.nan, math.nan, ""
         try:
-            first, *others = (_of_kind(case, kind) for kind in observable.kinds or (None,))
+            groups = [ids_of_kind(case, kind) for kind in observable.kinds or (None,)]
         except CaseError as error:  # which speaks of one kind
             known = str(error).partition(": ")[2]
             raise CaseError(f"kinds = {show(observable.kinds)}: {known}") from None
-        self.first, self.second = [first], others
-
-    def sampled(self, group: Group) -> bool:
-        """False: all spheres are looked at."""
-        return False
-
-    def independent(self, groups: list[Group]) -> bool:
-        """False: spheres keep others away."""
-        return False
-
-    def diffusion(self, group: Group) -> float | None:
-        """None: it is not known."""
-        return None
-
-
-def _of_kind(case: Case, kind: int | str | None) -> _Spheres:
-    """Those of a kind, or all."""
-    ids = ids_of_kind(case, kind)
-    return _Spheres(int(ids[0]) if len(ids) else 0, len(ids))
+        first, *others = (_Spheres(int(ids[0]) if len(ids) else 0, len(ids)) for ids in groups)
+        self.first, self.second = [first], [*others]

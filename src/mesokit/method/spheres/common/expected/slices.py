@@ -1,4 +1,4 @@
-"""Density, flow and temperature of spheres in slices across an axis."""
+"""Theory of density, flow and temperature of spheres in slices across an axis."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -12,6 +12,7 @@ from mesokit.case.case import Case
 from mesokit.geometry.walls import closed_axes
 from mesokit.method.spheres.common.expected.equilibrium import Equilibrium, still_walls, surfaces
 from mesokit.method.spheres.common.groups import ids_of_kind, refuse_molecules
+from mesokit.method.spheres.common.kinds import SphereKind
 from mesokit.observe.shared.profile import Compared, ProfileAccumulator
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.estimate import Estimate
@@ -25,18 +26,17 @@ FREEZES = {2: 0.69, 3: 0.49}  # packing fraction above which one sample is order
 
 
 class Slices:
-    """What all of them ask: equilibrium, which axis is closed, and how spheres are pulled."""
+    """Equilibrium of a case, its closed axes and its gravity."""
 
     def __init__(self, find: Find, case: Case, observable: Any) -> None:
         self.case, self.state = case, find(case)
         self.pull = case.spheres.gravity or (0.0,) * case.box.dimension
         self.closed = closed_axes(case)
         self.axis = case.box.index(observable.axis)
-        some = None if observable.kind is None else ids_of_kind(case, observable.kind)
-        self.ids: NDArray[np.int64] | None = some
+        self.ids = None if observable.kind is None else ids_of_kind(case, observable.kind)
 
     def inside(self, edges: Array) -> NDArray[np.bool_]:
-        """The slices that centres of all sizes reach every place of."""
+        """True for slices that centres of spheres of all sizes can fill."""
         off = self.case.spheres.largest(self.case.box) / 2 if self.axis in self.closed else 0.0
         return (edges[:-1] >= off) & (edges[1:] <= edges[-1] - off)
 
@@ -44,15 +44,14 @@ class Slices:
         self, profile: ProfileAccumulator, measured: Estimate, expected: Array, note: str
     ) -> list[Comparison]:
         """Chi-square of those slices."""
-        inside = self.inside(profile.edges)
-        weights = measured.weights
+        inside, weights = self.inside(profile.edges), measured.weights
         weights = weights if weights.ndim == 1 else weights[:, inside]
         some = Estimate(measured.value[inside], measured.residuals[:, inside], weights)
         return profile.chi_square(some, expected[inside], note)
 
     @property
     def steady(self) -> bool:
-        """Whether nothing changes any more: in equilibrium, or where heat comes in as it goes."""
+        """True in equilibrium, and where an energy source balances the loss in collisions."""
         heated = self.case.spheres.energy_source is not None
         return self.state is not None or (heated and still_walls(self.case))
 
@@ -66,25 +65,21 @@ class DensityInSlices(Slices):
     def __init__(self, find: Find, case: Case, observable: Any) -> None:
         refuse_molecules(observable.of)
         super().__init__(find, case, observable)
-        section, d = case.spheres, case.box.dimension
-        counts, scale = section.counts(case.box), section.scale(case.box)
-        # number, mass, diameter and spread of each kind that is looked at
-        self.kinds = [
-            (number, kind.mean_mass(d), kind.diameter * scale, kind.spread)
-            for k, (kind, number) in enumerate(zip(section.kinds, counts, strict=True))
+        counts = zip(case.spheres.kinds, case.spheres.counts(case.box), strict=True)
+        self.kinds = [  # those that are looked at, and their numbers
+            (kind, number)
+            for k, (kind, number) in enumerate(counts)
             if observable.kind is None or observable.kind in (k + 1, kind.name)
         ]
-        self.dimension = d
 
     def sums(self, profile: ProfileAccumulator, spheres: RunningSpheres) -> Array:
-        """Number and sum of m v^2 (2, bins)."""
         number, _, _, energy = profile.moments(spheres)
         return np.stack([number, energy])
 
     def compared(self, profile: ProfileAccumulator, density: Estimate, sums: Array) -> Compared:
         """The profile, compared as a whole, and beside gravity the mean place."""
         number, energy = sums.sum(axis=1)
-        kT = float(energy / number) / self.dimension if number > 0 else np.nan
+        kT = float(energy / number) / self.case.box.dimension if number > 0 else np.nan
         expected, found = self.expected(profile.edges, kT), list[Comparison]()
         if expected is not None and profile.blocks.count:
             note = self.note(expected)
@@ -100,50 +95,43 @@ class DensityInSlices(Slices):
         return Compared(expected, law, found, extra={"edges": profile.edges.copy()})
 
     def expected(self, edges: Array, kT: float) -> Array | None:
-        """Number per volume in each slice, at a mean m v^2 along an axis."""
-        shares = self.shares(edges, kT)
-        if shares is None:
-            return None
-        numbers = np.array([number for number, _, _, _ in self.kinds])
-        slice_volume = self.case.box.volume / (len(edges) - 1)
-        return np.asarray(numbers @ shares / slice_volume)
-
-    def shares(self, edges: Array, kT: float) -> Array | None:
-        """The part of each kind that is in each slice, (kinds, slices); None without a theory."""
+        """Number per volume in each slice, at a mean m v^2 along an axis; None without a theory."""
+        section, box, slices = self.case.spheres, self.case.box, len(edges) - 1
         if any(not wall.closed_axes for wall in self.case.walls):
             return None
-        if self.axis not in self.closed:
-            fluid = self.case.spheres.fraction(self.case.box) < FREEZES[self.dimension]
+        if self.axis in self.closed:
+            gas = self.state is not None and self.state.hard and kT > 0
+            if not gas or any(kind.spread for kind, _ in self.kinds):
+                return None
+            shares = np.array([self._between_plates(edges, kT, kind) for kind, _ in self.kinds])
+        else:
+            fluid = section.fraction(box) < FREEZES[box.dimension]
             if self.pull[self.axis] or not (self.steady and fluid):
                 return None
-            return np.full((len(self.kinds), len(edges) - 1), 1 / (len(edges) - 1))
-        if self.state is None or not (self.state.hard and kT > 0):
-            return None
-        if any(spread for _, _, _, spread in self.kinds):
-            return None
-        return np.array([self.in_gravity(edges, kT, one) for one in self.kinds])
+            shares = np.full((len(self.kinds), slices), 1 / slices)
+        numbers = np.array([number for _, number in self.kinds])
+        return np.asarray(numbers @ shares / (box.volume / slices))
 
-    def in_gravity(self, edges: Array, kT: float, one: tuple[float, ...]) -> Array:
-        """Between plates, of one kind."""
-        _, mass, diameter, _ = one
-        free, pull = float(edges[-1]) - diameter, self.pull[self.axis]
-        above = edges - diameter / 2
+    def _between_plates(self, edges: Array, kT: float, kind: SphereKind) -> Array:
+        """Share of the spheres of a kind in each slice (slices,)."""
+        box, pull = self.case.box, self.pull[self.axis]
+        diameter = kind.diameter * self.case.spheres.scale(box)
+        free, above = float(edges[-1]) - diameter, edges - diameter / 2
         if pull == 0:
             return np.diff(np.clip(above / free, 0.0, 1.0))
-        scale = kT / (mass * abs(pull))
+        scale = kT / (kind.mean_mass(box.dimension) * abs(pull))
         if pull < 0:
             return np.diff(theory.barometric_cdf(above, scale, free))
         return -np.diff(theory.barometric_cdf(free - above, scale, free))
 
     def note(self, density: Array) -> str:
-        """How far it is from exact, at a density (slices,)."""
+        """Note on the error of the theory at a density (slices,)."""
         if self.axis not in self.closed:
             return ""
         filled = self.case.spheres.fraction(self.case.box) * float(density.max() / density.mean())
         return "approximate: ideal gas" if filled > DILUTE else ""
 
     def legend(self) -> str:
-        """Whose law it is."""
         if self.axis in self.closed:
             return "barometric law" if self.pull[self.axis] else "ideal gas"
         return "the same everywhere"
@@ -160,12 +148,9 @@ class FlowInSlices(Slices):
         self.component = case.box.index(along, "component")
 
     def warnings(self) -> Iterator[str]:
-        """Nothing: spheres may be at rest along every axis."""
         yield from ()
 
     def compared(self, profile: ProfileAccumulator, velocity: Estimate, sums: Array) -> Compared:
-        """The profile beside rest or the mean velocity, by the sums (2, bins) of momentum and
-        mass."""
         momentum, mass = profile.blocks.sums()[0].sum(axis=(0, 2))
         level = self.expected(self.component, float(momentum / mass) if mass > 0 else 0.0)
         if np.isnan(level):
@@ -184,18 +169,18 @@ class FlowInSlices(Slices):
             return 0.0
         if self.pull[component]:
             return math.nan
-        holds = self.case.spheres.thermostatted or self.holding
-        return 0.0 if holds or not (self.case.walls or any(self.pull)) else found
+        rests = self._braked or not (self.case.walls or any(self.pull))
+        return 0.0 if rests else found
 
     @property
-    def holding(self) -> bool:
-        """Whether walls, or what heats, take momentum along walls."""
+    def _braked(self) -> bool:
+        """True if a thermostat, walls or an energy source take momentum along walls."""
         rough = any(wall.closed_axes == () for wall in self.case.walls)
         warm = any(surface.rule == "diffuse" for surface in surfaces(self.case))
         collision, source = self.case.spheres.instant_collision, self.case.spheres.energy_source
         turning = collision is not None and collision.rough
         bath = source is not None and source.bath_kT is not None
-        return rough or warm or turning or bath
+        return self.case.spheres.thermostatted or rough or warm or turning or bath
 
 
 class TemperatureInSlices(Slices):
@@ -207,26 +192,18 @@ class TemperatureInSlices(Slices):
 
     @property
     def rests(self) -> bool:
-        """Whether nothing flows."""
+        """True in equilibrium, where nothing flows."""
         return self.state is not None
-
-    def expected(self, found: float) -> tuple[float, bool]:
-        """The temperature, nan without a theory, and whether it is not just the mean `found`."""
-        if self.state is None:
-            return math.nan, False
-        known = not math.isnan(self.state.kT)
-        return (self.state.kT if known else found), known
 
     def compared(
         self, profile: ProfileAccumulator, temperature: Estimate, mean: Estimate, number: Array
     ) -> Compared:
-        """The temperature (bins,) and its mean over all, by the number (bins,) of sightings."""
-        value, error, law = float(mean.value), float(mean.error), "the same everywhere"
-        level, known = self.expected(value)
+        value, error = float(mean.value), float(mean.error)
         error = 0.0 if error < KEPT * value else error  # collisions keep it
-        told = level if known else math.nan
-        found = [Comparison("mean temperature", value, error, told, "m a^2/tau^2")]
-        expected = None if math.isnan(level) else np.full(profile.bins, level)
-        if expected is not None:
+        known = math.nan if self.state is None else self.state.kT
+        found, expected = [Comparison("mean temperature", value, error, known, "m a^2/tau^2")], None
+        level = value if self.state is not None and math.isnan(known) else known
+        if not math.isnan(level):
+            expected = np.full(profile.bins, level)
             found += self.chi_square(profile, temperature, expected, "against theory")
-        return Compared(expected, law, found if profile.blocks.count else [])
+        return Compared(expected, "the same everywhere", found if profile.blocks.count else [])

@@ -1,4 +1,4 @@
-"""How the velocities of spheres are distributed, and how far that is from Maxwell's."""
+"""Theory of the velocities of spheres: their distribution and its fourth cumulant."""
 
 import math
 from typing import Any
@@ -17,12 +17,11 @@ from mesokit.seam.engine import RunningSpheres
 
 Array = NDArray[np.float64]
 FEW = 0.01  # of the collisions, made elastic by a contact time: they do not change the law
-Known = tuple[float, str]  # a_2, nan where nothing is known, and whose law it is
 
 
-def cumulant(find: Find, case: Case) -> Known:
-    """What theory knows: of spheres that keep energy, and of smooth ones of constant restitution
-    without walls."""
+def cumulant(find: Find, case: Case) -> tuple[float, str]:
+    """a_2 and the name of its law, of spheres that keep energy, and of smooth ones of constant
+    restitution without walls; nan of others."""
     section = case.spheres
     if find(case) is not None:
         return 0.0, "Maxwell"
@@ -31,12 +30,10 @@ def cumulant(find: Find, case: Case) -> Known:
         return math.nan, ""
     if collision.elastic:
         return 0.0, "Maxwell"
-    kind, heating = section.kinds[0], section.energy_source
-    if len(section.kinds) > 1 or kind.spread:
-        return math.nan, ""
+    constant, heating = collision.constant_restitution, section.energy_source
     kicked = heating is not None and heating.white_noise
-    constant = collision.constant_restitution
-    if constant is None or collision.rough or (heating and not kicked):
+    mixed = len(section.kinds) > 1 or section.kinds[0].spread
+    if mixed or constant is None or collision.rough or (heating and not kicked):
         return math.nan, ""
     if theory.elastic_share(rate(case, section.kT), collision.contact_time) > FEW:
         return math.nan, ""
@@ -45,7 +42,7 @@ def cumulant(find: Find, case: Case) -> Known:
 
 
 class Cumulant:
-    """That of the velocities: `value`, nan where it is not known, `law` and whether it is exact."""
+    """Fourth cumulant of the velocities: `value`, nan without a theory, and the `law`."""
 
     answers = "velocity-cumulant"
 
@@ -65,8 +62,7 @@ class VelocitiesOfSpheres:
 
     def __init__(self, find: Find, case: Case, observable: Any) -> None:
         self.dimension = case.box.dimension
-        given = observable.component
-        self.axis = case.box.index(given, "component") if given else 0
+        self.axis = case.box.index(observable.component or "x", "component")
         self.group = ids_of_kind(case, observable.kind)
         if len(self.group) < 3:
             raise CaseError(
@@ -83,22 +79,19 @@ class VelocitiesOfSpheres:
         self.known = (not math.isnan(self.cumulant),) * 2
 
     def numbers(self, spheres: RunningSpheres) -> Array:
-        """Velocities (n, d) over sqrt(kT/m), with the temperature of this moment."""
+        """Velocities (n, d) over sqrt(kT/m), with the temperature at this moment."""
         v, mass = spheres.velocities(self.group), spheres.masses(self.group)
         u = (v - mass @ v / mass.sum()) * np.sqrt(mass)[:, None]
         kT = float((u * u).sum()) / u.size
         return np.asarray(u[self.chosen] / math.sqrt(kT) if kT > 0 else u[self.chosen])
 
     def warm(self, runs: int) -> float:
-        """Nothing: every sample has its own temperature."""
         return 0.0
 
     def legend(self) -> str:
-        """Whose law it is."""
         return "Maxwell" if self.cumulant == 0 else "first Sonine polynomial"
 
     def note(self, classes: int) -> str:
-        """What to say of it."""
         if self.cumulant == 0:
             return f"Maxwell, {classes} classes"
         return f"approximate: first order in a_2 = {self.cumulant:.3g}, dilute uniform gas"

@@ -1,4 +1,4 @@
-"""What is measured of spheres and disks of both methods. A new observable is a file here."""
+"""Observables of spheres and disks of both methods. A new one is a file here."""
 
 from mesokit.case.registry import parts_in
 from mesokit.observe import Observable

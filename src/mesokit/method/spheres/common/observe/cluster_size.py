@@ -5,11 +5,11 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
+from mesokit.geometry.walls import closed_axes
+from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.engine import RunningSpheres
-from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -17,7 +17,7 @@ USUAL_GAP = 0.1  # of the largest diameter
 
 
 @component
-class ClusterSize(Observable):
+class ClusterSize(OfSpheres):
     """Shares of the spheres in clusters of 1, of 2 or 3, of 4 to 7 and so on.
 
     Two spheres whose surfaces are nearer than `gap` belong to one cluster, as do neighbours of
@@ -25,9 +25,8 @@ class ClusterSize(Observable):
     """
 
     quantity: Literal["contact-clusters"] = tag("contact-clusters")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
+    value_label = "share of the spheres, to below the next"
+    units: ClassVar[dict[str, str]] = {"cluster of": ""}
     gap: float | None = param(
         None,
         doc="between the surfaces of neighbours, at most (a tenth of the largest diameter unless "
@@ -41,13 +40,12 @@ class ClusterSize(Observable):
 class ClusterSizeAccumulator(BlockAccumulator):
     """Block averages of the shares, of the mean and of the largest."""
 
-    def __init__(self, observable: ClusterSize, case: Case) -> None:
-        self.name, self.case = observable.label, case
-        usual = USUAL_GAP * case.spheres.largest(case.box)
-        self.gap = usual if observable.gap is None else observable.gap
+    def prepare(self) -> None:
+        case, gap = self.case, self.observable.gap
+        self.gap = USUAL_GAP * case.spheres.largest(case.box) if gap is None else gap
         self.classes = case.particles.bit_length()
         self.blocks = Blocks((self.classes + 2,))
-        closed = method_of(case).enclosure.closed_axes(case)
+        closed = closed_axes(case)
         self.repeats = np.array([k not in closed for k in range(case.box.dimension)])
 
     def observe(self, spheres: RunningSpheres) -> None:
@@ -62,31 +60,18 @@ class ClusterSizeAccumulator(BlockAccumulator):
         """The shares, beside no theory."""
         value, error = self.blocks.mean(), self.blocks.error()
         names = ("mean cluster of a sphere", "share of the largest cluster", "single spheres")
-        listed = [
-            Comparison(name, float(value[k]), float(error[k]), note=f"gap < {self.gap:g}")
-            for name, k in zip(names, (-2, -1, 0), strict=True)
-        ]
-        return Result(
-            quantity="contact-clusters",
-            drawing="curve",
-            name=self.name,
-            x={"cluster of": np.array([str(2**k) for k in range(self.classes)])},
-            value=value[:-2],
-            error=error[:-2],
-            label="share of the spheres, to below the next",
-            units={"value": "", "cluster of": ""},
-            comparisons=tuple(listed) if self.blocks.count else (),
-            samples=self.blocks.count,
+        return self.report(
+            {"cluster of": [str(2**k) for k in range(self.classes)]},
+            (value[:-2], error[:-2]),
+            (
+                Comparison(name, value[k], error[k], note=f"gap < {self.gap:g}")
+                for name, k in zip(names, (-2, -1, 0), strict=True)
+            ),
         )
 
 
-def cluster_sizes(
-    places: Array,
-    diameters: Array,
-    period: Array,
-    gap: float,
-) -> NDArray[np.int64]:
-    """How many spheres each cluster has; an axis whose period is 0 does not repeat.
+def cluster_sizes(places: Array, diameters: Array, period: Array, gap: float) -> NDArray[np.int64]:
+    """Number of spheres in each cluster; an axis whose period is 0 does not repeat.
 
     >>> rows = np.array([[0.5, 1.0], [9.6, 1.0], [5.0, 5.0]])
     >>> cluster_sizes(rows, np.ones(3), np.array([10.0, 0.0]), 0.2)

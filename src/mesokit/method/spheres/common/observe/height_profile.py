@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
-from mesokit.errors import CaseError
+from mesokit.method.spheres.common.observe.protocol import OfSpheres, gravity_axis
 from mesokit.seam.engine import RunningSpheres
-from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -20,7 +19,7 @@ DILUTE = 0.005  # fraction at the floor above which an ideal gas is 1 % off, or 
 
 
 @component
-class HeightProfile(Observable):
+class HeightProfile(OfSpheres):
     """Number density of centres in layers above the floor, over the mean of the box.
 
     Gravity is along one axis, which plates close. Of elastic equal spheres the law of an ideal gas
@@ -28,30 +27,25 @@ class HeightProfile(Observable):
     """
 
     quantity: Literal["height-profile"] = tag("height-profile")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
+    value_label = "density over that of the box"
+    units: ClassVar[dict[str, str]] = {"height": "a"}
     bins: int = param(40, doc="layers from one plate to the other", ge=2, le=10_000)
 
     def check(self, case: Case) -> None:
         """Raise CaseError without gravity along one axis that plates close."""
-        along = np.flatnonzero(case.spheres.gravity)
-        closed = method_of(case).enclosure.closed_axes(case)
-        if len(along) != 1 or int(along[0]) not in closed:
-            raise CaseError("height-profile: expected gravity along one axis, which plates close")
+        gravity_axis(case, "height-profile")
 
 
 @accumulator_of(HeightProfile)
 class HeightProfileAccumulator(BlockAccumulator):
     """Block averages of the layers, of the mean height and of the temperature."""
 
-    def __init__(self, observable: HeightProfile, case: Case) -> None:
-        self.name, self.case = observable.label, case
-        self.axis = int(np.flatnonzero(case.spheres.gravity)[0])
-        self.gravity = float(case.spheres.gravity[self.axis])
-        self.depth = float(case.box.size[self.axis])
-        self.edges = np.linspace(0.0, self.depth, observable.bins + 1)
-        self.blocks = Blocks((observable.bins + 2,))
+    def prepare(self) -> None:
+        self.axis = gravity_axis(self.case, "height-profile")
+        self.gravity = float(self.case.spheres.gravity[self.axis])
+        self.depth = float(self.case.box.size[self.axis])
+        self.edges = np.linspace(0.0, self.depth, self.observable.bins + 1)
+        self.blocks = Blocks((self.observable.bins + 2,))
 
     def observe(self, spheres: RunningSpheres) -> None:
         place = spheres.positions(unwrapped=True)[:, self.axis]
@@ -64,32 +58,23 @@ class HeightProfileAccumulator(BlockAccumulator):
         """The profile, and the mean height of centres."""
         value, error = self.blocks.mean(), self.blocks.error()
         expected, mean = self.expected(float(value[-1]))
-        phi = self.case.spheres.fraction(self.case.box)
         known = np.isfinite(mean)
+        phi = self.case.spheres.fraction(self.case.box)
         dense = known and phi * float(np.nanmax(expected)) > DILUTE
         note = "approximate: ideal gas" if dense else ""
-        height = Comparison("mean height", float(value[-2]), float(error[-2]), mean, "a", note)
-        return Result(
-            quantity="height-profile",
-            drawing="curve",
-            name=self.name,
-            x={"height": 0.5 * (self.edges[1:] + self.edges[:-1])},
-            value=value[:-2],
-            error=error[:-2],
-            label="density over that of the box",
-            units={"value": "", "height": "a"},
+        return self.report(
+            {"height": 0.5 * (self.edges[1:] + self.edges[:-1])},
+            (value[:-2], error[:-2]),
+            [Comparison("mean height", value[-2], error[-2], mean, "a", note)],
             expected=expected if known else None,
             theory="barometric law" if known else "",
-            comparisons=(height,) if self.blocks.count else (),
-            samples=self.blocks.count,
             extra={"edges": self.edges.copy()},
         )
 
     def expected(self, kT: float) -> tuple[NDArray[np.float64], float]:
         """The profile and the mean height of an ideal gas; nan of what is no gas of this kind."""
         section, d = self.case.spheres, self.case.box.dimension
-        kinds = section.kinds
-        collision = section.instant_collision
+        kinds, collision = section.kinds, section.instant_collision
         alike = len(kinds) == 1 and kinds[0].spread == 0
         gas = collision is not None and collision.elastic and collision.hard
         if not alike or not gas or not kT > 0:

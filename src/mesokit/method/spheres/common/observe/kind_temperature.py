@@ -7,14 +7,15 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.engine import RunningSpheres
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 
 @component
-class KindTemperature(Observable):
+class KindTemperature(OfSpheres):
     """Temperature of the motion of each kind over that of all: 1 of elastic spheres.
 
     Motion is about the mean velocity of all, whose degrees of freedom are left out. Kinds of an
@@ -22,9 +23,8 @@ class KindTemperature(Observable):
     """
 
     quantity: Literal["kind-temperature"] = tag("kind-temperature")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
+    value_label = "temperature over that of all"
+    units: ClassVar[dict[str, str]] = {"kind": ""}
 
     def check(self, case: Case) -> None:
         """Raise CaseError for a single kind, and for a kind without spheres."""
@@ -37,9 +37,8 @@ class KindTemperature(Observable):
 class KindTemperatureAccumulator(BlockAccumulator):
     """Block averages of the ratios."""
 
-    def __init__(self, observable: KindTemperature, case: Case) -> None:
-        self.name, self.case = observable.label, case
-        counts = case.spheres.counts(case.box)
+    def prepare(self) -> None:
+        counts = self.case.spheres.counts(self.case.box)
         self.kinds = np.repeat(np.arange(len(counts)), counts)  # spheres come kind after kind
         self.blocks = Blocks((len(counts),))
 
@@ -55,40 +54,17 @@ class KindTemperatureAccumulator(BlockAccumulator):
         self.blocks.add(shares * free.sum() / free)
 
     def result(self) -> Result:
-        """One number for each kind."""
-        value, error = self.blocks.mean(), self.blocks.error()
-        known = self.shared_out()
-        expected = np.full(len(value), 1.0 if known else np.nan)
-        names = [kind.name or str(k + 1) for k, kind in enumerate(self.case.spheres.kinds)]
-        listed = tuple(
-            Comparison(
-                f"temperature of kind {names[k]} over that of all",
-                float(value[k]),
-                float(error[k]),
-                float(expected[k]),
-                "",
-            )
-            for k in range(len(names))
-        )
-        return Result(
-            quantity="kind-temperature",
-            drawing="curve",
-            name=self.name,
-            x={"kind": np.array(names)},
-            value=value,
-            error=error,
-            label="temperature over that of all",
-            units={"value": "", "kind": ""},
-            expected=expected,
-            theory="equipartition" if known else "",
-            comparisons=listed if self.blocks.count else (),
-            samples=self.blocks.count,
-        )
-
-    def shared_out(self) -> bool:
-        """Whether collisions alone share out the energy: elastic ones, without walls or kicks."""
-        section = self.case.spheres
+        """One number for each kind; 1 where elastic collisions alone share out the energy."""
+        value, error, section = self.blocks.mean(), self.blocks.error(), self.case.spheres
         collision, source = section.instant_collision, section.energy_source
-        if collision is None or self.case.walls:
-            return False
-        return collision.elastic and not (source is not None and source.white_noise)
+        kicked = source is not None and source.white_noise
+        alone = collision is not None and not self.case.walls
+        known = alone and collision.elastic and not kicked
+        expected = np.full(len(value), 1.0 if known else np.nan)
+        names = [kind.name or str(k + 1) for k, kind in enumerate(section.kinds)]
+        found = (
+            Comparison(f"temperature of kind {name} over that of all", *numbers)
+            for name, *numbers in zip(names, value, error, expected, strict=True)
+        )
+        theory = "equipartition" if known else ""
+        return self.report({"kind": names}, self.blocks, found, expected=expected, theory=theory)

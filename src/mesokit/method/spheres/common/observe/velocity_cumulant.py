@@ -1,4 +1,4 @@
-"""How far the velocities of spheres are from Maxwell's: the fourth cumulant."""
+"""Fourth cumulant: deviation of the velocities of spheres from Maxwell's distribution."""
 
 from typing import ClassVar, Literal
 
@@ -7,15 +7,17 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.expected.velocities import Cumulant
+from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 
 @component
-class VelocityCumulant(Observable):
+class VelocityCumulant(OfSpheres):
     """a_2 = d/(d + 2) <v^4>/<v^2>^2 - 1 of equal spheres: 0 of Maxwell's distribution.
 
     Each sample is scaled by its own temperature and freed of the mean velocity, and is corrected
@@ -23,9 +25,8 @@ class VelocityCumulant(Observable):
     """
 
     quantity: Literal["velocity-cumulant"] = tag("velocity-cumulant")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
+    value_label = "fourth cumulant $a_2$"
+    units: ClassVar[dict[str, str]] = {"of": ""}
 
     def check(self, case: Case) -> None:
         """Raise CaseError where spheres differ in mass, and for less than three."""
@@ -40,9 +41,11 @@ class VelocityCumulant(Observable):
 class VelocityCumulantAccumulator(BlockAccumulator):
     """Block averages of a_2."""
 
-    def __init__(self, observable: VelocityCumulant, case: Case) -> None:
-        self.name, self.blocks = observable.label, Blocks((1,))
-        self.theory = method_of(case).expected["velocity-cumulant"](case, observable)
+    def prepare(self) -> None:
+        self.blocks = Blocks((1,))
+        self.theory: Cumulant = method_of(self.case).expected["velocity-cumulant"](
+            self.case, self.observable
+        )
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample; none of spheres that stand still."""
@@ -59,22 +62,13 @@ class VelocityCumulantAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """One number."""
-        value, error = self.blocks.mean(), self.blocks.error()
-        theory = self.theory
-        note = "" if theory.exact else "approximate: first order, dilute uniform gas"
-        note = note if theory.law else ""
-        listed = (Comparison("a_2", float(value[0]), float(error[0]), theory.value, "", note),)
-        return Result(
-            quantity="velocity-cumulant",
-            drawing="curve",
-            name=self.name,
-            x={"of": np.array(["velocity"])},
-            value=value,
-            error=error,
-            label="fourth cumulant $a_2$",
-            units={"value": "", "of": ""},
+        theory, (value,), (error,) = self.theory, self.blocks.mean(), self.blocks.error()
+        rough = theory.law and not theory.exact
+        note = "approximate: first order, dilute uniform gas" if rough else ""
+        return self.report(
+            {"of": ["velocity"]},
+            self.blocks,
+            [Comparison("a_2", value, error, theory.value, "", note)],
             expected=np.array([theory.value]),
             theory=theory.law,
-            comparisons=listed if self.blocks.count else (),
-            samples=self.blocks.count,
         )

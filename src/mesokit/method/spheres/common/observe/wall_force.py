@@ -1,5 +1,6 @@
 """Force of spheres on the walls."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -7,9 +8,10 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.estimate import Array, Estimate, of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -18,7 +20,7 @@ STILL = 1e-3  # of the weight that their momentum may grow by in a unit of time
 
 
 def surface_names(case: Case) -> tuple[str, ...]:
-    """What surfaces are called, wall by wall."""
+    """Names of surfaces, wall by wall."""
     names = []
     for i, wall in enumerate(case.walls):
         name, keys = wall.name or f"{type(wall).__name__.lower()}-{i + 1}", wall.surfaces()
@@ -27,16 +29,15 @@ def surface_names(case: Case) -> tuple[str, ...]:
 
 
 @component
-class WallForce(Observable):
+class WallForce(OfSpheres):
     """Mean force on each surface, and of all of them beside the weight of the spheres.
 
     It is the momentum that spheres give to a surface per time.
     """
 
     quantity: Literal["wall-force"] = tag("wall-force")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
+    value_label = "force on a surface"
+    units: ClassVar[dict[str, str]] = {"value": "m a/tau^2", "surface": "", "component": ""}
 
     def check(self, case: Case) -> None:
         """Raise CaseError without a wall."""
@@ -51,10 +52,9 @@ class WallForceAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
-    def __init__(self, observable: WallForce, case: Case) -> None:
-        self.name, self.case = observable.label, case
-        self.names = surface_names(case)
-        self.taken, d = len(self.names) * case.box.dimension, case.box.dimension
+    def prepare(self) -> None:
+        self.names, d = surface_names(self.case), self.case.box.dimension
+        self.taken = len(self.names) * d
         self.blocks = Blocks((self.taken + 1 + d,))
         self.before = np.full(1 + self.taken + d, np.nan)  # time, momentum taken and there so far
 
@@ -68,24 +68,17 @@ class WallForceAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """Forces, and their sum along the axis of gravity."""
-        axes = np.array(self.case.box.axes)
+        axes = self.case.box.axes
         forces = self.forces() if self.blocks.count else of_mean(self.blocks)
         shape = len(self.names), len(axes)
-        return Result(
-            quantity="wall-force",
-            drawing="curve",
-            name=self.name,
-            x={"surface": np.array(self.names), "component": axes},
-            value=forces.value[: self.taken].reshape(shape),
-            error=exact(forces)[: self.taken].reshape(shape),
-            label="force on a surface",
-            units={"value": "m a/tau^2", "surface": "", "component": ""},
-            comparisons=tuple(self.comparisons(forces)) if self.blocks.count else (),
-            samples=self.blocks.count,
+        return self.report(
+            {"surface": self.names, "component": axes},
+            (forces.value[: self.taken].reshape(shape), exact(forces)[: self.taken].reshape(shape)),
+            self.comparisons(forces),
         )
 
     def steady(self, axis: int) -> bool:
-        """Whether the spheres gain no momentum along an axis, but for what is there by chance."""
+        """True if the spheres gain no momentum along an axis, but for chance."""
         found, section = of_mean(self.blocks), self.case.spheres
         mass, gained = self.taken, self.taken + 1 + axis
         g = section.gravity[axis] if section.gravity else 0.0
@@ -108,12 +101,11 @@ class WallForceAccumulator(BlockAccumulator):
                 matrix[chosen, self.taken + 1 + k] = shares
         return found.linear(matrix)
 
-    def comparisons(self, forces: Estimate) -> list[Comparison]:
+    def comparisons(self, forces: Estimate) -> Iterator[Comparison]:
         """The force on all walls along each axis of gravity: the weight, if the spheres gain no
         momentum on average."""
-        section, box = self.case.spheres, self.case.box
-        mass, listed = float(forces.value[self.taken]), []
-        for k, (axis, g) in enumerate(zip(box.axes, section.gravity, strict=False)):
+        box, mass = self.case.box, float(forces.value[self.taken])
+        for k, (axis, g) in enumerate(zip(box.axes, self.case.spheres.gravity, strict=False)):
             if g:
                 chosen = np.zeros((1, len(forces.value)))
                 chosen[0, k : self.taken : box.dimension] = 1.0
@@ -121,10 +113,8 @@ class WallForceAccumulator(BlockAccumulator):
                 note = "approximate: they gain momentum meanwhile"
                 if self.steady(k):
                     note = "the weight; with the momentum that spheres gained by chance"
-                what = f"force on all walls along {axis}"
-                value, error = float(total.value[0]), float(exact(total)[0])
-                listed.append(Comparison(what, value, error, mass * g, "m a/tau^2", note))
-        return listed
+                what, error = f"force on all walls along {axis}", exact(total)[0]
+                yield Comparison(what, total.value[0], error, mass * g, "m a/tau^2", note)
 
 
 def exact(found: Estimate) -> Array:

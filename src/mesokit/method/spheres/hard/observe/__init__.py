@@ -1,4 +1,4 @@
-"""What is measured of event-driven spheres alone. A new observable is a file here."""
+"""Observables of event-driven spheres alone. A new one is a file here."""
 
 from mesokit.case.registry import parts_in
 from mesokit.method.spheres.common.observe import MeanSquareDisplacement, Observable

@@ -1,18 +1,19 @@
-"""How often hard spheres collide."""
+"""Collision rate of hard spheres."""
 
 import math
-from typing import ClassVar, Literal, NamedTuple
+from collections.abc import Iterator
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mesokit import theory
-from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.method.spheres.common.expected.enskog import pair_rate, root_of_temperature
+from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.engine import CollidingSpheres
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
+from mesokit.seam.result import Comparison, Result, joined
 from mesokit.statistics import Blocks
 
 MANY = 25  # collisions, of which blocks know the error
@@ -22,7 +23,7 @@ NEIGHBOURS = "approximate: spheres that meet again, measured for disks at phi = 
 
 
 @component
-class CollisionRate(Observable):
+class CollisionRate(OfSpheres):
     """Collisions of a sphere per time: with others, with walls, and made elastic by a contact time.
 
     A collision of two counts for both; what a contact time does is told without walls. The mean
@@ -33,16 +34,8 @@ class CollisionRate(Observable):
 
     quantity: Literal["collision-rate"] = tag("collision-rate")
     methods: ClassVar[tuple[str, ...]] = ("event-driven",)
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
-
-
-class Few(NamedTuple):
-    """What is known of the rate of rare collisions: the least error, theory, and why."""
-
-    error: float = 0.0
-    expected: float = math.nan
-    note: str = ""
+    value_label = "collisions of a sphere per time"
+    units: ClassVar[dict[str, str]] = {"value": "1/tau", "with": ""}
 
 
 @accumulator_of(CollisionRate)
@@ -51,8 +44,7 @@ class CollisionRateAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
-    def __init__(self, observable: CollisionRate, case: Case) -> None:
-        self.name, self.case, self.every = observable.label, case, observable.every
+    def prepare(self) -> None:
         self.blocks = Blocks((5,))  # three rates, the root of the temperature, the mean speed
         self.before = np.full(6, np.nan)  # time, three counts, root of temperature, mean speed
 
@@ -70,73 +62,58 @@ class CollisionRateAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """The three rates."""
-        value, error = self.blocks.mean(), self.blocks.error()
-        known = np.array([self.expected(float(value[3])), math.nan, math.nan])
-        contact_time, few = self.case.spheres.collision.contact_time, Few()
+        value, error, spheres = self.blocks.mean(), self.blocks.error(), self.case.spheres
+        known = np.array([pair_rate(self.case, float(value[3])), math.nan, math.nan])
+        contact_time, rare = spheres.collision.contact_time, ""
         if contact_time and not self.case.walls:
             known[2] = known[0] * theory.elastic_share(float(value[0]), contact_time)
-            few = self.few(float(value[2]), float(known[2]))
-            error[2], known[2] = max(error[2], few.error), few.expected
+            least, known[2], rare = self.of_few(float(value[2]), float(known[2]))
+            error[2] = max(error[2], least)
         # that of a contact time counts walls as well, which are not told apart
         shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
         drawn = 2 if self.case.walls else 1
-        note = "approximate: molecular chaos" if not self.case.spheres.collision.elastic else ""
-        share = "" if math.isnan(known[2]) else NEIGHBOURS
-        notes = [note, note, "; ".join(filter(None, (share, few.note)))]
-        listed = [
-            Comparison(
-                f"collisions per time, {KINDS[k]}",
-                float(value[k]),
-                float(error[k]),
-                float(known[k]),
-                "1/tau",
-                notes[k],
-            )
-            for k in shown
-        ]
-        if value[0] > 0 and not self.case.walls:
-            listed.append(self.free_path(note))
-        return Result(
-            quantity="collision-rate",
-            drawing="curve",
-            name=self.name,
-            x={"with": np.array(KINDS[:drawn])},
-            value=value[:drawn],
-            error=error[:drawn],
-            label="collisions of a sphere per time",
-            units={"value": "1/tau", "with": ""},
+        note = "" if spheres.collision.elastic else "approximate: molecular chaos"
+        notes = [note, note, joined("" if math.isnan(known[2]) else NEIGHBOURS, rare)]
+
+        def comparisons() -> Iterator[Comparison]:
+            for k in shown:
+                what = f"collisions per time, {KINDS[k]}"
+                yield Comparison(what, value[k], error[k], known[k], "1/tau", notes[k])
+            if value[0] > 0 and not self.case.walls:
+                yield self.free_path(note)
+
+        return self.report(
+            {"with": KINDS[:drawn]},
+            (value[:drawn], error[:drawn]),
+            comparisons(),
             expected=known[:drawn],
             theory="Enskog",
-            comparisons=tuple(listed) if self.blocks.count else (),
-            samples=self.blocks.count,
         )
 
-    def few(self, rate: float, known: float) -> Few:
-        """Of few collisions blocks do not know the error: it is Poisson's then, of as many as there
-        are or are to be expected. Where none has been seen and few are, nothing can be compared."""
-        spacing = self.every * float(self.case.spheres.timestep)
+    def of_few(self, rate: float, known: float) -> tuple[float, float, str]:
+        """The least error of a rate of few collisions, its theory, and a note.
+
+        Of few collisions blocks do not give the error: it is Poisson's then, of as many as there
+        are or are expected. Where none has been seen and few are, nothing can be compared.
+        """
+        spacing = self.observable.every * float(self.case.spheres.timestep)
         each = 2 / (self.case.particles * max(1, self.blocks.count) * spacing)  # rate of one
         seen, awaited = rate / each, known / each
         if max(seen, 0.0 if math.isnan(awaited) else awaited) >= MANY:
-            return Few(expected=known)
+            return 0.0, known, ""
         text = f"{round(seen)} seen, {awaited:.2g} expected" if known >= 0 else f"{seen:.0f} seen"
         if seen < 0.5 and not awaited >= ENOUGH:
-            return Few(each, note=f"{text}: the error is that of one")
+            return each, math.nan, f"{text}: the error is that of one"
         most = max(seen, awaited) if known >= 0 else seen
-        return Few(math.sqrt(most) * each, known, f"{text}: Poisson's error")
+        return math.sqrt(most) * each, known, f"{text}: Poisson's error"
 
     def free_path(self, note: str) -> Comparison:
         """Mean speed over the rate, which Maxwell's velocities relate to one another."""
-        found = of_mean(self.blocks)
+        found, d = of_mean(self.blocks), self.case.box.dimension
         rate, _, _, root, speed = found.value
-        d = self.case.box.dimension
         mass = self.case.spheres.kinds[0].mean_mass(d)
         maxwell = math.sqrt((math.pi / 2 if d == 2 else 8 / math.pi) / mass) * root
-        path, error = found.scalar(
-            speed / rate, np.array([-speed / rate**2, 0.0, 0.0, 0.0, 1 / rate])
-        )
-        return Comparison("mean free path", path, error, maxwell / self.expected(root), "a", note)
-
-    def expected(self, root: float) -> float:
-        """The rate of a uniform fluid of equal hard spheres, nan of all others."""
-        return pair_rate(self.case, root)
+        gradient = np.array([-speed / rate**2, 0.0, 0.0, 0.0, 1 / rate])
+        path, error = found.scalar(speed / rate, gradient)
+        expected = maxwell / pair_rate(self.case, root)
+        return Comparison("mean free path", path, error, expected, "a", note)

@@ -1,24 +1,25 @@
 """Pressure and collision rate of hard spheres."""
 
 import math
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
 
-from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
-from mesokit.method.spheres.common.expected.enskog import fluid_note, speed_factor
+from mesokit.method.spheres.common.expected.enskog import compressibility, equal_hard, speed_factor
+from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.engine import CollidingSpheres
-from mesokit.seam.estimate import Estimate, of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.estimate import of_mean
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 
 @component
-class EquationOfState(Observable):
+class EquationOfState(OfSpheres):
     """Z = P/(n kT) of spheres that keep energy, by the virial and, of hard ones, by the rate.
 
     By the virial Z = 1 + sum of r.dp over collisions/(d N kT t), where d (N - 1) kT is twice the
@@ -29,8 +30,8 @@ class EquationOfState(Observable):
 
     quantity: Literal["equation-of-state"] = tag("equation-of-state")
     methods: ClassVar[tuple[str, ...]] = ("event-driven",)
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
+    value_label = "compressibility $P/(n k_B T)$"
+    units: ClassVar[dict[str, str]] = {"measured by": ""}
 
     def check(self, case: Case) -> None:
         """Raise CaseError where there is no pressure of a uniform fluid."""
@@ -48,8 +49,7 @@ class EquationOfStateAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
-    def __init__(self, observable: EquationOfState, case: Case) -> None:
-        self.name, self.case, self.every = observable.label, case, observable.every
+    def prepare(self) -> None:
         self.blocks = Blocks((3,))  # virial and collisions per time, twice the kinetic energy
         self.before = np.full(3, np.nan)  # time, virial, collisions at the last sample
 
@@ -64,110 +64,54 @@ class EquationOfStateAccumulator(BlockAccumulator):
     def result(self) -> Result:
         """Z by the virial and, of equal hard spheres, by the rate of collisions."""
         pressures, rate = self.measured()
-        expected, theory_name = self.expected()
+        expected, law, note = compressibility(self.case)
         names = ["virial", "collision rate"][: len(pressures)]
-        values = np.array([value for value, _ in pressures])
-        errors = np.array([error for _, error in pressures])
-        hard = self.case.spheres.collision.hard
-        note = (fluid_note(self.case) or self._note_of_few(expected)) if hard else ""
         if self.blocks.count and rate[0] == 0:
             note = "undetermined: no collision was seen"
-        listed = [
-            Comparison(f"Z by the {name}", *found, expected, "", note)
-            for name, found in zip(names, pressures, strict=True)
-        ]
-        if self.blocks.count:
-            listed.append(Comparison("collision rate", *rate, self.expected_rate(), "1/tau", note))
-        return Result(
-            quantity="equation-of-state",
-            drawing="curve",
-            name=self.name,
-            x={"measured by": np.array(names)},
-            value=values,
-            error=errors,
-            label="compressibility $P/(n k_B T)$",
-            units={"value": "", "measured by": ""},
+
+        def comparisons() -> Iterator[Comparison]:
+            for name, found in zip(names, pressures, strict=True):
+                yield Comparison(f"Z by the {name}", *found, expected, "", note)
+            yield Comparison("collision rate", *rate, self.expected_rate(expected), "1/tau", note)
+
+        values, errors = np.transpose(pressures)
+        return self.report(
+            {"measured by": names},
+            (values, errors),
+            comparisons(),
             expected=np.full(len(names), expected),
-            theory=theory_name,
-            comparisons=tuple(listed) if self.blocks.count else (),
-            samples=self.blocks.count,
+            theory=law,
             extra={"packing_fraction": self.case.spheres.fraction(self.case.box)},
         )
 
     def measured(self) -> tuple[list[tuple[float, float]], tuple[float, float]]:
         """Z with its error by each way, and the collisions of a sphere per time."""
-        case, n = self.case, self.case.particles
-        d = case.box.dimension
+        case, n, d = self.case, self.case.particles, self.case.box.dimension
+        undetermined = [(math.nan, math.nan)] * (2 if equal_hard(self.case) else 1)
         if not self.blocks.count:
-            none = (math.nan, math.nan)
-            return [none] * (2 if self.equal else 1), none
-        found: Estimate = of_mean(self.blocks)
+            return undetermined, (math.nan, math.nan)
+        found = of_mean(self.blocks)
         virial, events, twice = found.value
         if not events:  # none of these numbers is known then
-            return [(math.nan, math.nan)] * (2 if self.equal else 1), (0.0, math.nan)
+            return undetermined, (0.0, math.nan)
         kT = twice / (d * (n - 1))  # momentum is zero
         gradient = np.array([1 / (d * n * kT), 0.0, -virial / (d * n * kT * twice)])
         pressures = [found.scalar(1 + virial / (d * n * kT), gradient)]
-        if self.equal:
-            kind, box = case.spheres.kinds[0], case.box
-            mass = kind.mean_mass(d)
-            factor = kind.diameter * case.spheres.scale(box) * math.sqrt(math.pi * mass / kT)
+        if len(undetermined) == 2:
+            kind, scale = case.spheres.kinds[0], case.spheres.scale(case.box)
+            factor = kind.diameter * scale * math.sqrt(math.pi * kind.mean_mass(d) / kT)
             factor *= 2 / n / (2 * d) / speed_factor(case)
             gradient = np.array([0.0, factor, -0.5 * factor * events / twice])
             pressures.append(found.scalar(1 + factor * events, gradient))
         return pressures, found.scalar(2 * events / n, np.array([0.0, 2 / n, 0.0]))
 
-    @property
-    def equal(self) -> bool:
-        """Whether all are hard spheres of one size, whose collision rate says what Z is."""
-        kinds, collision = self.case.spheres.kinds, self.case.spheres.collision
-        return len(kinds) == 1 and kinds[0].spread == 0 and collision.hard
-
-    def expected(self) -> tuple[float, str]:
-        """Z of this box of hard spheres in equilibrium, and whose law that is; nan of others."""
-        section, box = self.case.spheres, self.case.box
-        if not section.collision.hard:
-            return math.nan, ""
-        z = theory.compressibility_of_few(self._law, section.fraction(box), self.case.particles)
-        if self.equal:
-            return z, "virial series" if box.dimension == 2 else "Kolafa"
-        return (
-            z,
-            "Santos, Yuste, Lopez de Haro" if box.dimension == 2 else "Boublik, Mansoori et al.",
-        )
-
-    def _law(self, phi: float) -> float:
-        """Z of many such spheres at a packing fraction."""
-        section, box = self.case.spheres, self.case.box
-        d = box.dimension
-        if self.equal:
-            return theory.compressibility(phi, d)
-        counts, scale = section.counts(box), section.scale(box)
-        total = sum(counts)
-        moments = [
-            sum(
-                n * kind.mean_power(p) * scale**p
-                for n, kind in zip(counts, section.kinds, strict=True)
-            )
-            / total
-            for p in range(1, d + 1)
-        ]
-        return theory.mixture_compressibility(phi, moments, d)
-
-    def _note_of_few(self, expected: float) -> str:
-        """That the box is small, where that changes the excess of Z by more than 0.2 %."""
-        many = self._law(self.case.spheres.fraction(self.case.box))
-        if abs(many - expected) <= 0.002 * abs(many - 1):
-            return ""
-        return f"approximate: {self.case.particles} spheres; {many:.4g} is the law of many"
-
-    def expected_rate(self) -> float:
-        """Collisions of a sphere per time that belong to that Z, nan for mixtures."""
-        if not self.equal:
+    def expected_rate(self, z: float) -> float:
+        """Collisions of a sphere per time that belong to Z, nan for mixtures."""
+        if not equal_hard(self.case):
             return math.nan
         case, d = self.case, self.case.box.dimension
         kind = case.spheres.kinds[0]
         diameter = kind.diameter * case.spheres.scale(case.box)
         kT = self.blocks.mean()[2] / (d * (case.particles - 1))
-        excess = (self.expected()[0] - 1) * speed_factor(case)
+        excess = (z - 1) * speed_factor(case)
         return float(2 * d * excess / (diameter * math.sqrt(math.pi * kind.mean_mass(d) / kT)))

@@ -1,10 +1,8 @@
-"""How long hard spheres fly from one collision to the next."""
-
-from __future__ import annotations
+"""Times of flight of hard spheres from one collision to the next."""
 
 import math
 from collections.abc import Iterator
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +12,10 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.enskog import fluid_note, pair_rate, root_of_temperature
+from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.engine import CollidingSpheres
 from mesokit.seam.estimate import of_mean, of_ratio
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -27,7 +26,7 @@ TIME = "tau"
 
 
 @component
-class FreeTimes(Observable):
+class FreeTimes(OfSpheres):
     """Distribution of the times between successive collisions of a sphere, with others and walls.
 
     All flights count that end between two samples. Theory is that of a uniform gas of equal elastic
@@ -38,8 +37,8 @@ class FreeTimes(Observable):
 
     quantity: Literal["free-times"] = tag("free-times")
     methods: ClassVar[tuple[str, ...]] = ("event-driven",)
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
+    drawing, value_label = "histogram", "probability density"
+    units: ClassVar[dict[str, str]] = {"value": f"1/{TIME}", "duration": TIME}
     measures: ClassVar[tuple[str, ...]] = ("free times",)
     bins: int = param(
         64, doc="of some eight mean free times: a power of two", unit="", ge=8, le=FINE
@@ -67,8 +66,8 @@ class FreeTimesAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "before", "edges")
 
-    def __init__(self, observable: FreeTimes, case: Case) -> None:
-        self.name, self.case, self.bins = observable.label, case, observable.bins
+    def prepare(self) -> None:
+        self.bins = self.observable.bins
         # flights in bins and longer ones; sums of times and squares; root of the temperature
         self.blocks = Blocks((self.bins + 4,))
         self.before = np.zeros(self.bins + 3)
@@ -84,7 +83,7 @@ class FreeTimesAccumulator(BlockAccumulator):
         self.blocks.add([*(now - self.before), root])
         self.before = now
 
-    def pool(self, other: FreeTimesAccumulator) -> None:
+    def pool(self, other: Self) -> None:
         super().pool(other)
         self.edges = np.maximum(self.edges, other.edges)  # zero before the first sample
 
@@ -103,20 +102,13 @@ class FreeTimesAccumulator(BlockAccumulator):
             expected = np.diff(theory.free_time_cdf(edges / mean, d)) / width
             simple = -np.diff(np.exp(-edges / mean)) / width
             beside = {"beside": simple, "beside_label": "exponential, approximate"}
-        listed = self.comparisons(mean) if found else []
-        return Result(
-            quantity="free-times",
-            drawing="histogram",
-            name=self.name,
-            x={"duration": (edges[1:] + edges[:-1]) / 2},
-            value=value / width,
-            error=error / width,
-            label="probability density",
-            units={"value": f"1/{TIME}", "duration": TIME},
+        listed = list(self.comparisons(mean)) if found else []
+        return self.report(
+            {"duration": (edges[1:] + edges[:-1]) / 2},
+            (value / width, error / width),
+            listed,
             expected=expected,
             theory="molecular chaos",
-            comparisons=tuple(listed),
-            samples=self.blocks.count,
             extra={
                 "edges": edges,
                 "of": "time between collisions",
@@ -134,7 +126,7 @@ class FreeTimesAccumulator(BlockAccumulator):
         rate = pair_rate(self.case, float(self.blocks.mean()[-1]))
         return 1 / rate if steady and rate > 0 else math.nan
 
-    def comparisons(self, known: float) -> list[Comparison]:
+    def comparisons(self, known: float) -> Iterator[Comparison]:
         """Mean, mean square over its square, and how many flights there were."""
         every, d = of_mean(self.blocks), self.case.box.dimension
         number = float(every.value[: self.bins + 1].sum())
@@ -142,29 +134,19 @@ class FreeTimesAccumulator(BlockAccumulator):
         ones = np.zeros(len(every.value))
         ones[: self.bins + 1] = 1.0
         of_times, of_squares = (np.eye(len(ones))[k] for k in (-3, -2))
+        elastic, chaos = self.case.spheres.collision.elastic, "approximate: molecular chaos"
+        dilute = self.case.spheres.fraction(self.case.box) <= DILUTE
+        spread_note = "2 of an exponential" if elastic and dilute else chaos
+        note, expected = fluid_note(self.case) or ("" if elastic else chaos), math.nan
+        if math.isnan(known):
+            note = spread_note = ""
+        else:
+            expected = theory.free_time_spread(d)
         mean = times / number
-        gradient = (of_times - mean * ones) / number
-        elastic = self.case.spheres.collision.elastic
-        chaos = "approximate: molecular chaos"
-        first = Comparison(
-            "mean free time",
-            *every.scalar(mean, gradient),
-            known,
-            TIME,
-            "" if math.isnan(known) else fluid_note(self.case) or ("" if elastic else chaos),
-        )
+        measured = every.scalar(mean, (of_times - mean * ones) / number)
+        yield Comparison("mean free time", *measured, known, TIME, note)
         spread = squares * number / times**2
         gradient = spread * (of_squares / squares + ones / number - 2 * of_times / times)
-        dilute = self.case.spheres.fraction(self.case.box) <= DILUTE
-        second = Comparison(
-            "mean square over the square of the mean",
-            *every.scalar(spread, gradient),
-            theory.free_time_spread(d) if math.isfinite(known) else math.nan,
-            "",
-            "" if math.isnan(known) else "2 of an exponential" if elastic and dilute else chaos,
-        )
-        return [
-            first,
-            second,
-            Comparison("flights", float(round(number * self.blocks.count)), math.nan),
-        ]
+        what = "mean square over the square of the mean"
+        yield Comparison(what, *every.scalar(spread, gradient), expected, "", spread_note)
+        yield Comparison("flights", round(number * self.blocks.count), math.nan)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
@@ -10,10 +11,11 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.observe.protocol import OfSpheres
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import NOT_STEADY, Comparison, Result
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
+from mesokit.seam.result import NOT_STEADY, Comparison, Result, joined
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
@@ -25,7 +27,7 @@ LANDED = 0.1  # of the weight: a bed whose flux is nearer to it has landed
 
 
 @component
-class ContactStress(Observable):
+class ContactStress(OfSpheres):
     """Pressure by the motion of soft spheres and by their forces, and how many touch each.
 
     The pressure of forces is the virial of pairs, sum r F over d times the volume of the box.
@@ -37,8 +39,8 @@ class ContactStress(Observable):
 
     quantity: Literal["contact-stress"] = tag("contact-stress")
     methods: ClassVar[tuple[str, ...]] = ("soft-spheres",)
-    of_methods_alone: ClassVar[bool] = True
-    needs_fluid: ClassVar[bool] = False
+    value_label = "pressure"
+    units: ClassVar[dict[str, str]] = {"by": ""}
 
     def check(self, case: Case) -> None:
         """Raise CaseError for one sphere."""
@@ -50,8 +52,8 @@ class ContactStress(Observable):
 class ContactStressAccumulator(BlockAccumulator):
     """Block averages of pressures, temperature, contacts, and flux and weight along gravity."""
 
-    def __init__(self, observable: ContactStress, case: Case) -> None:
-        self.name, self.case = observable.label, case
+    def prepare(self) -> None:
+        case = self.case
         self.volume = float(np.prod(case.box.size))
         self.floor = _floor(case)
         self.unit = "m/tau^2" if case.box.dimension == 2 else "m/(a tau^2)"
@@ -75,49 +77,36 @@ class ContactStressAccumulator(BlockAccumulator):
     def result(self) -> Result:
         """Pressures, and what they are to be."""
         value, error = self.blocks.mean(), self.blocks.error()
-        return Result(
-            quantity="contact-stress",
-            drawing="curve",
-            name=self.name,
-            x={"by": np.array(PARTS)},
-            value=value[:2],
-            error=error[:2],
-            label="pressure",
-            units={"value": self.unit, "by": ""},
-            expected=None,
-            theory="",
-            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
-            samples=self.blocks.count,
+        return self.report(
+            {"by": PARTS}, (value[:2], error[:2]), self.comparisons(), units={"value": self.unit}
         )
 
-    def comparisons(self) -> list[Comparison]:
+    def comparisons(self) -> Iterator[Comparison]:
         """Pressure, compressibility, contacts, and flux over weight."""
-        found = of_mean(self.blocks)
+        found, section, box = of_mean(self.blocks), self.case.spheres, self.case.box
         kinetic, forces, kT, contacts, flux, weight, above = found.value
-        total, error = found.scalar(kinetic + forces, np.array([1.0, 1, 0, 0, 0, 0, 0]))
-        listed = [Comparison("pressure", total, error, unit=self.unit)]
-        density = self.case.particles / self.volume
+        alike = len(section.kinds) == 1 and section.kinds[0].spread == 0
+        total = found.scalar(kinetic + forces, np.array([1.0, 1, 0, 0, 0, 0, 0]))
+        yield Comparison("pressure", *total, unit=self.unit)
         if self.floor is None and not self.case.walls and kT > 0:
-            per = 1 / (density * kT)
+            per, known, note = 1 / (self.case.particles / self.volume * kT), math.nan, ""
             gradient = np.array([0.0, per, -forces * per / kT, 0, 0, 0, 0])
-            z, error = found.scalar(1 + forces * per, gradient)
-            note = "approximate: hard spheres" if math.isfinite(known := self.hard()) else ""
-            listed.append(Comparison("P/(n kT)", z, error, known, "", note))
-        if getattr(self.case.spheres.pair, "width", None) is not None:
-            value, error = found.scalar(contacts, np.array([0.0, 0, 0, 1, 0, 0, 0]))
-            listed.append(Comparison("contacts of a sphere", value, error))
+            if alike and getattr(section.pair, "elastic", False) and not section.gravity:
+                known = theory.compressibility(section.fraction(box), box.dimension)
+                note = "approximate: hard spheres"
+            measured = found.scalar(1 + forces * per, gradient)
+            yield Comparison("P/(n kT)", *measured, known, "", note)
+        if getattr(section.pair, "width", None) is not None:
+            yield Comparison("contacts of a sphere", *found.scalar(contacts, np.eye(7)[3]))
         if self.floor is not None and weight > 0 and above == 0:
             gradient = np.array([0.0, 0, 0, 0, 1 / weight, -flux / weight**2, 0])
             ratio, error = found.scalar(flux / weight, gradient)
-            alike = len(self.case.spheres.kinds) == 1 and self.case.spheres.kinds[0].spread == 0
             off = "lie on the floor without overlap" if alike else "on the floor have the mean size"
-            note = f"approximate: as if spheres {off}"
-            note = "; ".join(filter(None, (self.falling(ratio), note)))
-            listed.append(Comparison("flux along gravity over weight", ratio, error, 1.0, "", note))
-        return listed
+            note = joined(self.falling(ratio), f"approximate: as if spheres {off}")
+            yield Comparison("flux along gravity over weight", ratio, error, 1.0, "", note)
 
     def falling(self, ratio: float) -> str:
-        """That samples began while spheres fell, where the flux is not yet near the weight."""
+        """A note if samples began while spheres fell, and the flux is not yet near the weight."""
         assert self.floor is not None
         k, g, _ = self.floor
         step, had = method_of(self.case).timestep(self.case), self.case.run.warmup
@@ -125,14 +114,6 @@ class ContactStressAccumulator(BlockAccumulator):
         if had >= need or abs(ratio - 1) < LANDED:
             return ""
         return f"{NOT_STEADY}: a fall and a rise take {need} steps before samples, had {had}"
-
-    def hard(self) -> float:
-        """Compressibility of hard spheres, nan of spheres that lose energy or attract."""
-        section = self.case.spheres
-        alike = len(section.kinds) == 1 and section.kinds[0].spread == 0
-        if not (alike and getattr(section.pair, "elastic", False)) or section.gravity:
-            return math.nan
-        return theory.compressibility(section.fraction(self.case.box), self.case.box.dimension)
 
 
 def _floor(case: Case) -> tuple[int, float, float] | None:
