@@ -7,7 +7,7 @@ import pytest
 
 from mesokit import SRD, BondLength, Harmonic, MaxwellBoltzmann, MoleculeSize, Stress
 from mesokit.method.mpcd.molecule import Molecule
-from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.method.mpcd.observe.shared.tensor import kept
 from mesokit.observe.shared.short_run import ENOUGH
 from tests.helpers.small_fluids import make_case
 from tests.helpers.whole_fluid import AtOnce

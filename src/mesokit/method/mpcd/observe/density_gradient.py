@@ -31,6 +31,8 @@ class DensityGradient(Observable):
     """
 
     quantity: Literal["density-gradient"] = tag("density-gradient")
+    drawing = "profile"
+    value_label = "density"
     axis: Axis | None = param(
         None, doc="the axis (that of the force on the fluid, x unless there is one)"
     )
@@ -74,8 +76,8 @@ class DensityGradient(Observable):
 class DensityGradientAccumulator(BlockAccumulator):
     """Particles in each slice of a unit cell."""
 
-    def __init__(self, observable: DensityGradient, case: Case) -> None:
-        self.case, self.name = case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.axis = observable.axis_of(case)
         self.length, self.repeats = observable.length_of(case), round(observable.repeats(case))
         self.slices = round(self.length * observable.bins_per_cell)
@@ -96,7 +98,6 @@ class DensityGradientAccumulator(BlockAccumulator):
         return np.asarray(whole * share.reshape(self.repeats, self.slices).sum(axis=0))
 
     def result(self) -> Result:
-        """Density over the unit cell, and how uneven it is."""
         volume, every = self.volume(), of_mean(self.blocks)
         seen = volume > OPEN * volume.max()
         scale = np.where(seen, 1 / np.where(seen, volume, 1.0), np.nan)
@@ -108,19 +109,13 @@ class DensityGradientAccumulator(BlockAccumulator):
             uniform = np.where(seen, mean, np.nan)
         found = tuple(self.comparisons(density, mean, seen)) if self.blocks.count else ()
         known = compression(self.case)
-        return Result(
-            quantity="density-gradient",
-            drawing="profile",
-            name=self.name,
-            x={axis: (np.arange(self.slices) + 0.5) * self.length / self.slices},
-            value=density.value,
-            error=density.error if self.blocks.count else np.full(self.slices, np.nan),
-            label="density",
+        return self.report(
+            {axis: (np.arange(self.slices) + 0.5) * self.length / self.slices},
+            (density.value, density.error if self.blocks.count else np.full(self.slices, np.nan)),
+            found,
             units={"value": unit, axis: "a"},
             expected=uniform,
             theory="uniform",
-            comparisons=found,
-            samples=self.blocks.count,
             extra={
                 "bins_per_cell": self.bins_per_cell,
                 "length": self.length,
@@ -129,7 +124,6 @@ class DensityGradientAccumulator(BlockAccumulator):
         )
 
     def comparisons(self, density: Estimate, mean: float, seen: Array) -> Iterator[Comparison]:
-        """Amplitude of the wave that is as long as the unit cell, extremes, spread."""
         known = compression(self.case)
         said = f"acceleration x length/(kT/m) is {known[1]:.2g}" if known else ""
         place = 2 * np.pi * (np.arange(self.slices) + 0.5) / self.slices

@@ -134,7 +134,6 @@ class DynamicModuliAccumulator(BlockAccumulator):
         return expected
 
     def comparisons(self) -> Iterator[Comparison]:
-        """Totals, and the viscosity that the loss modulus is."""
         if not self.blocks.count:
             return
         mean, error, expected = self.blocks.mean()[-1], self.blocks.error()[-1], self.expected()[-1]

@@ -9,16 +9,12 @@ from mesokit.case.box import AXES, Axis
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.flow_memory import (
-    FlowMemory,
-    build_up_of,
-    flow_memory,
-)
+from mesokit.method.mpcd.observe.shared.flow_memory import FlowMemory, build_up_of, flow_memory
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Comparison, Result, joined
 from mesokit.statistics import Blocks, TimeSeries
 
 FLUX = {2: "a^2/tau", 3: "a^3/tau"}  # by dimension
@@ -36,6 +32,8 @@ class FlowRate(Observable):
     quantity: Literal["flow-rate"] = tag("flow-rate")
     asks_transport: ClassVar[bool] = True
     of_built_up_flow: ClassVar[bool] = True
+    drawing = "flow series"
+    units: ClassVar[dict[str, str]] = {"value": "a/tau", "time": "tau"}
     axis: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")
 
     def check(self, case: Case) -> None:
@@ -60,8 +58,8 @@ class FlowRateAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series")
 
-    def __init__(self, observable: FlowRate, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.axis = observable.seen(case)
         self.mass = setting.superficial_mass(case)
         self.blocks, self.series = Blocks(), TimeSeries(1)
@@ -73,23 +71,16 @@ class FlowRateAccumulator(BlockAccumulator):
         self.series.add(fluid.time, [velocity])
 
     def result(self) -> Result:
-        """The velocity in time, whose points are no means of their own: the error is nan."""
         time, value = self.series.time(), self.series.values()[:, 0]
         known, theory_name = self.expected()
         found = self.comparisons(known, theory_name) if self.blocks.count else []
-        return Result(
-            quantity="flow-rate",
-            drawing="flow series",
-            name=self.name,
-            x={"time": time},
-            value=value,
-            error=np.full(value.shape, np.nan),
+        return self.report(
+            {"time": time},
+            value,
+            found,
             label=f"mean velocity along {AXES[self.axis]}",
-            units={"value": "a/tau", "time": "tau"},
             expected=None if np.isnan(known) else np.full(value.shape, known),
             theory=theory_name,
-            comparisons=tuple(found),
-            samples=self.blocks.count,
             extra={
                 "mean": float(self.blocks.mean()),
                 "mean_error": self.error(),
@@ -111,14 +102,13 @@ class FlowRateAccumulator(BlockAccumulator):
         return max(float(self.blocks.error()), self.flow_memory().least / self.mass)
 
     def comparisons(self, known: float, name: str) -> list[Comparison]:
-        """Mean velocity, flow rate, permeability."""
         mean: Estimate = of_mean(self.blocks)
         speed, error = float(mean.value), self.error()
         size, letter = np.array(self.case.box.size, float), AXES[self.axis]
         area = float(np.prod(size) / size[self.axis])
         short = self.flow_memory().note
         off = setting.caveat(self.case) or (setting.rarefied(self.case) if name else "")
-        note = "; ".join(filter(None, (off or name, short)))
+        note = joined(off or name, short)
         found = [
             Comparison(f"mean velocity along {letter}", speed, error, known, "a/tau", note),
             Comparison(
@@ -143,7 +133,7 @@ class FlowRateAccumulator(BlockAccumulator):
                     abs(scale) * error,
                     scale * known,
                     "a^2",
-                    "; ".join(filter(None, [name, "theoretical viscosity", short])),
+                    joined(name, "theoretical viscosity", short),
                 )
             )
         return found

@@ -1,5 +1,6 @@
 """Force and torque of the fluid on each solid."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -13,18 +14,13 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.flow_memory import (
-    FlowMemory,
-    build_up_of,
-    flow_memory,
-)
-from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
-from mesokit.method.mpcd.observe.wall_stress import PLATES, balance
+from mesokit.method.mpcd.observe.shared.flow_memory import FlowMemory, build_up_of, flow_memory
+from mesokit.method.mpcd.observe.wall_stress import PLATES, SinceLast, balance, require_counted
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import SURE, Estimate, noted, of_mean
 from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result, with_error
+from mesokit.seam.result import Array, Comparison, Result, joined, with_error
 from mesokit.statistics import Blocks, TimeSeries
 
 FORCE, TORQUE = "m a/tau^2", "m a^2/tau^2"
@@ -49,6 +45,8 @@ class Forces(Observable):
     at_any_kT: ClassVar[tuple[str, ...]] = ("force on all solids",)
     asks_transport: ClassVar[bool] = True
     measures: ClassVar[tuple[str, ...]] = ("walls",)
+    drawing = "per solid"
+    value_label = "force and torque on each solid"
     length: float | None = param(
         None, doc="length D of the coefficients (none unless said)", unit="a", gt=0
     )
@@ -86,8 +84,8 @@ class ForcesAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series", "walls")
 
-    def __init__(self, observable: Forces, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        case = self.case
         self.dimension = d = case.box.dimension
         slit = slit_of(case)
         self.bodies = list(PLATES) if slit else solids_of(case).names
@@ -108,22 +106,18 @@ class ForcesAccumulator(BlockAccumulator):
             self.series.add(fluid.time - 0.5 * steps * self.case.fluid.timestep, taken)
 
     def result(self) -> Result:
-        """Every component on every solid; the time series is in `extra`."""
         size, expected = int(np.prod(self.shape)), self.expected()
         units = {name: FORCE if name[0] == "f" else TORQUE for name in self.components}
-        return Result(
-            quantity="forces",
-            drawing="per solid",
-            name=self.name,
-            x={"body": np.array(self.bodies), "component": np.array(self.components)},
-            value=self.blocks.mean()[:size].reshape(self.shape),
-            error=self.errors()[:size].reshape(self.shape),
-            label="force and torque on each solid",
-            units={"value": ""} | units,
+        return self.report(
+            {"body": self.bodies, "component": self.components},
+            (
+                self.blocks.mean()[:size].reshape(self.shape),
+                self.errors()[:size].reshape(self.shape),
+            ),
+            self.comparisons(expected),
+            units=units,
             expected=expected,
             theory="momentum balance",
-            comparisons=tuple(self.comparisons(expected)) if self.blocks.count else (),
-            samples=self.blocks.count,
             extra={
                 "coefficient": self.coefficient(),
                 "time": self.series.time(),
@@ -138,7 +132,6 @@ class ForcesAccumulator(BlockAccumulator):
         )
 
     def errors(self) -> Array:
-        """Standard errors of all components, and of the momentum."""
         found = of_mean(self.blocks, falling=True).error
         known = self.balanced_error()
         if len(self.bodies) == 1 and np.isfinite(known):
@@ -230,11 +223,9 @@ class ForcesAccumulator(BlockAccumulator):
         )
         return length * inner, length * outer
 
-    def comparisons(self, expected: Array) -> list[Comparison]:
-        """The balance of all forces, shares and torques of the solids, and their coefficients."""
+    def comparisons(self, expected: Array) -> Iterator[Comparison]:
         mean, total = of_mean(self.blocks, falling=True), self.total()
         force = np.arange(np.prod(self.shape)).reshape(self.shape)  # places of the components
-        found = []
         few = len(self.bodies) <= NAMED
         for axis in map(int, np.flatnonzero(setting.uniform_acceleration(self.case))):
             every = np.zeros(mean.value.shape)
@@ -247,11 +238,11 @@ class ForcesAccumulator(BlockAccumulator):
             elif np.isfinite(known):  # however short the run
                 error = known
             else:
-                note = "; ".join(filter(None, (note, short)))
+                note = joined(note, short)
             what = f"force on all solids along {AXES[axis]}"
-            found.append(Comparison(what, value, error, float(total[axis]), FORCE, note))
+            yield Comparison(what, value, error, total[axis], FORCE, note)
             if few and len(self.bodies) > 1 and np.isfinite(total[axis]):
-                found += self.shares(mean, force[:, axis], axis, expected, short)
+                yield from self.shares(mean, force[:, axis], axis, expected, short)
         for body, column in np.argwhere(expected[:, self.dimension :] != 0) if few else ():
             place = body, self.dimension + column
             if np.isfinite(expected[place]):
@@ -260,25 +251,23 @@ class ForcesAccumulator(BlockAccumulator):
                 value, error = mean.scalar(mean.value[force[place]], one)
                 note = setting.caveat(self.case) or self.note_on_torque(int(body))
                 what = f"torque on {self.bodies[body]}"
-                found.append(Comparison(what, value, error, float(expected[place]), TORQUE, note))
+                yield Comparison(what, value, error, expected[place], TORQUE, note)
         if self.observable.length is not None:
-            found += self.coefficients(mean, force, few)
-        return found
+            yield from self.coefficients(mean, force, few)
 
     def shares(
         self, mean: Estimate, places: NDArray[np.intp], axis: int, expected: Array, short: str
-    ) -> list[Comparison]:
+    ) -> Iterator[Comparison]:
         """What part of the force on the fluid each solid takes; `short`: the caveat of the run."""
-        total, found = self.total()[axis], []
-        note = "; ".join(filter(None, ("of the force on the fluid", short)))
+        total = self.total()[axis]
+        note = joined("of the force on the fluid", short)
         for body, place in enumerate(places):
             gradient = np.zeros(mean.value.shape)
             gradient[place] = 100.0 / total
             value, error = mean.scalar(gradient @ mean.value, gradient)
             what = f"share of {self.bodies[body]} along {AXES[axis]}"
             known = 100.0 * float(expected[body, axis] / total)
-            found.append(Comparison(what, value, error, known, "%", note))
-        return found
+            yield Comparison(what, value, error, known, "%", note)
 
     def coefficient(self) -> float:
         """What turns a force along the flow into its coefficient, nan without a length."""
@@ -308,7 +297,6 @@ class ForcesAccumulator(BlockAccumulator):
         return slope
 
     def along(self) -> int:
-        """Number of the axis of the drag."""
         given = self.observable.flow
         flow = setting.driven_axis(self.case) if given is None else AXES.index(given)
         assert flow is not None  # as `check` has seen
@@ -341,7 +329,9 @@ class ForcesAccumulator(BlockAccumulator):
         axis = setting.driven_axis(self.case)
         return None if axis is None else build_up_of(self.flow_memory(axis), self.case)
 
-    def coefficients(self, mean: Estimate, force: NDArray[np.intp], few: bool) -> list[Comparison]:
+    def coefficients(
+        self, mean: Estimate, force: NDArray[np.intp], few: bool
+    ) -> Iterator[Comparison]:
         """Reynolds number, drag and lift, with the error of the speed where that is measured."""
         given, flow = self.observable, self.along()
         assert given.length is not None
@@ -349,15 +339,13 @@ class ForcesAccumulator(BlockAccumulator):
         note = f"U = {with_error(abs(speed), spread)} a/tau, the mean superficial velocity"
         if given.speed is not None:
             speed, spread, note = given.speed, 0.0, f"U = {given.speed:g} a/tau"
-        note = "; ".join(filter(None, (note, short)))
+        note = joined(note, short)
         if speed == 0:
-            return []
-        transport, found = setting.transport(self.case), []
+            return
+        transport = setting.transport(self.case)
         if transport is not None:
             inverse = given.length / transport.viscosity
-            found.append(
-                Comparison("Reynolds number", abs(speed) * inverse, spread * inverse, note=note)
-            )
+            yield Comparison("Reynolds number", abs(speed) * inverse, spread * inverse, note=note)
         scale, part = self.scale(speed), spread / abs(speed)
         for body in self.obstacles() if few else ():
             for axis in (flow, *(k for k in range(self.dimension) if k != flow)):
@@ -370,5 +358,4 @@ class ForcesAccumulator(BlockAccumulator):
                 kind = "drag coefficient" if axis == flow else "lift coefficient"
                 where = f" along {AXES[axis]}" if self.dimension == 3 and axis != flow else ""
                 what = f"{kind} of {self.bodies[body]}{where}"
-                found.append(Comparison(what, value, error, note=noted(value, note)))
-        return found
+                yield Comparison(what, value, error, note=noted(value, note))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -21,8 +21,8 @@ from mesokit.method.mpcd.expected.selection import KIND, group_of, molecule_of
 from mesokit.method.mpcd.expected.traps import held, trapped
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.observable import BlockAccumulator, Observable, State, accumulator_of
+from mesokit.seam.result import Array, Comparison, Result, joined
 
 FINE = 480  # bins in memory; those of a result are of several
 DIVISORS = tuple(n for n in range(1, FINE + 1) if FINE % n == 0)
@@ -40,6 +40,8 @@ class MoleculeHistogram(Observable):
 
     quantity: Literal["molecule-histogram"] = tag("molecule-histogram")
     needs_fluid: ClassVar[bool] = False
+    drawing = "histogram"
+    value_label = "probability density"
     of: Literal["gyration", "end-to-end", "orientation", "centre"] = param(
         "gyration",
         doc="radius of gyration; of chains the end-to-end distance (with `axis` its component), "
@@ -89,11 +91,11 @@ class MoleculeHistogram(Observable):
 
 
 @accumulator_of(MoleculeHistogram)
-class MoleculeHistogramAccumulator:
+class MoleculeHistogramAccumulator(BlockAccumulator):
     """Shares of the molecules in fine bins."""
 
-    def __init__(self, observable: MoleculeHistogram, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.group = group_of(case, "beads", observable.kind)
         self.beads = self.group.beads(observable.molecules)
         self.axis, self.dimension = observable.axis_of(case), case.box.dimension
@@ -157,11 +159,9 @@ class MoleculeHistogramAccumulator:
         self.means.restore(state)
 
     def pool(self, other: MoleculeHistogramAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         self.means.pool(other.means)
 
     def result(self) -> Result:
-        """The density over what was found, in so many bins, and the mean."""
         first, last, many = self.coarse()
         edges = self.edges[first : last + 1 : many]
         combine = np.zeros((len(edges) - 1, FINE))
@@ -174,18 +174,13 @@ class MoleculeHistogramAccumulator:
         )
         name = f"R{AXES[self.axis]}" if self.component else name
         unit = "" if name == "cosine" else "a"
-        return Result(
-            quantity="molecule-histogram",
-            drawing="histogram",
-            name=self.name,
-            x={name: (edges[1:] + edges[:-1]) / 2},
-            value=self.means.mean(combine),
-            error=self.means.error(combine),
-            label="probability density",
+        return self.report(
+            {name: (edges[1:] + edges[:-1]) / 2},
+            (self.means.mean(combine), self.means.error(combine)),
+            self.comparisons(known),
             units={"value": "1/a" if unit else "", name: unit},
             expected=None if expected is None else expected / (edges[1] - edges[0]),
             theory=self.legend(),
-            comparisons=tuple(self.comparisons(known)) if self.means.blocks.count else (),
             samples=self.means.blocks.count,
             extra={"edges": edges, "of": self.words()},
         )
@@ -269,18 +264,19 @@ class MoleculeHistogramAccumulator:
         )
         return np.concatenate([[0.0], np.cumsum(share)])
 
-    def comparisons(self, known: Array | None) -> list[Comparison]:
+    def comparisons(self, known: Array | None) -> Iterator[Comparison]:
         """The mean, by the middles of the fine bins, as theory is taken too; of centres in traps
         the mean square distance from where they are in the mean."""
         if self.observable.of == "centre":
             if known is None or not trapped(self.case, self.observable.kind):
-                return []
-            return [self.spread(np.diff(known))]
+                return
+            yield self.spread(np.diff(known))
+            return
         middle = ((self.edges[1:] + self.edges[:-1]) / 2)[None]
         value, error = float(self.means.mean(middle)[0]), float(self.means.error(middle)[0])
         expected = np.nan if known is None else float(middle[0] @ np.diff(known))
         outside = 1 - float(self.means.mean().sum())
         left = f"{100 * outside:.2g} % larger than largest are left out" if outside > 1e-9 else ""
-        note = "; ".join(filter(None, (left, self.means.caution())))
+        note = joined(left, self.means.caution())
         unit = "" if self.observable.of == "orientation" else "a"
-        return [Comparison(f"mean {self.words()}", value, error, expected, unit, note)]
+        yield Comparison(f"mean {self.words()}", value, error, expected, unit, note)

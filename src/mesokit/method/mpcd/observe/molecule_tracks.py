@@ -13,7 +13,7 @@ from mesokit.method.mpcd.expected.selection import KIND, group_of, molecule_of
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Comparison, Result, joined
 from mesokit.statistics import TimeSeries
 
 NUMBERS = 2**20  # of the time series, for all molecules together
@@ -32,6 +32,8 @@ class MoleculeTracks(Observable):
 
     quantity: Literal["molecule-tracks"] = tag("molecule-tracks")
     needs_fluid: ClassVar[bool] = False
+    drawing = "tracks"
+    value_label = "molecules in time"
     molecules: int = param(20, doc="molecules followed, evenly spread over all", ge=1, le=10_000)
     kind: int | str = param(1, doc=KIND)
     axis: Axis | None = param(
@@ -62,8 +64,9 @@ class MoleculeTracksAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("series", "means")
 
-    def __init__(self, observable: MoleculeTracks, case: Case) -> None:
-        self.case, self.name, self.kind = case, observable.label, observable.kind
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
+        self.kind = observable.kind
         self.group = group_of(case, "beads", observable.kind)
         self.beads = self.group.beads(observable.molecules)
         self.number, self.dimension = len(self.beads), case.box.dimension
@@ -106,26 +109,20 @@ class MoleculeTracksAccumulator(BlockAccumulator):
         self.means.add(np.stack([gyration, square, aligned, *velocity.T], axis=1))
 
     def result(self) -> Result:
-        """The series of every molecule; a sample has no error bar: nan."""
         names = self.components
         value = self.series.values().reshape(-1, self.number, len(names))
         units = dict.fromkeys(names, "a") | {"orientation": ""}
         units |= {f"v{a}": "a/tau" for a in AXES}
         sizes = ideal_sizes(self.case, self.kind, self.group)
-        return Result(
-            quantity="molecule-tracks",
-            drawing="tracks",
-            name=self.name,
-            x={
+        return self.report(
+            {
                 "time": self.series.time(),
                 "molecule": 1 + (self.beads[:, 0] - self.group.first) // self.group.length,
-                "component": np.array(names),
+                "component": names,
             },
-            value=value,
-            error=np.full(value.shape, np.nan),
-            label="molecules in time",
+            value,
+            self.comparisons(*sizes),
             units={"value": "", "time": "tau", "molecule": ""} | {n: units[n] for n in names},
-            comparisons=tuple(self.comparisons(*sizes)) if self.means.blocks.count else (),
             samples=self.means.blocks.count,
             extra={
                 "axis": AXES[self.axis],
@@ -136,7 +133,6 @@ class MoleculeTracksAccumulator(BlockAccumulator):
         )
 
     def comparisons(self, gyration: float, ends: float) -> Iterator[Comparison]:
-        """Mean squares of size, orientation, velocity."""
         mean, error = self.means.mean().tolist(), self.means.error().tolist()
         yield Comparison(
             "mean square radius of gyration", mean[0], error[0], gyration, "a^2", self.note()
@@ -156,4 +152,4 @@ class MoleculeTracksAccumulator(BlockAccumulator):
         """How many molecules are behind an error bar, where they are few."""
         few = self.number < self.group.number
         words = f"of {self.number} of {self.group.number} molecules" if few else ""
-        return "; ".join(filter(None, (words, self.means.caution())))
+        return joined(words, self.means.caution())

@@ -45,6 +45,13 @@ class Probe(Observable):
     """
 
     quantity: Literal["probe"] = tag("probe")
+    drawing = "signal"
+    units: ClassVar[dict[str, str]] = {
+        "value": "a^2/tau",
+        "frequency": "1/tau",
+        "velocity": "a/tau",
+        "time": "tau",
+    }
     centre: Either[None, float] = param(
         None,
         doc="middle of the small box (that of the box unless said); what sticks out of a periodic "
@@ -113,8 +120,8 @@ class ProbeAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series", "last")
 
-    def __init__(self, observable: Probe, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.dimension = d = case.box.dimension
         self.centre = np.array(observable.place(case))
         self.half = np.array(observable.size or (2.0,) * d) / 2
@@ -160,22 +167,15 @@ class ProbeAccumulator(BlockAccumulator):
         return [signal[:shortest] for signal in signals], interval
 
     def result(self) -> Result:
-        """The spectrum of one component; the time series of all is in `extra`."""
         values, letter = self.series.values(), AXES[self.component]
         signals, interval = self.signals()
         found = mean_spectrum([spectrum(signal, interval) for signal in signals])
         peak = mean_frequency([dominant_frequency(signal, interval) for signal in signals])
-        return Result(
-            quantity="probe",
-            drawing="signal",
-            name=self.name,
-            x={"frequency": found.frequency},
-            value=found.power,
-            error=found.error,
+        return self.report(
+            {"frequency": found.frequency},
+            (found.power, found.error),
+            self.comparisons(peak),
             label=f"power of v_{letter} per frequency",
-            units={"value": "a^2/tau", "frequency": "1/tau", "velocity": "a/tau", "time": "tau"},
-            comparisons=tuple(self.comparisons(peak)) if self.blocks.count else (),
-            samples=self.blocks.count,
             extra={
                 "time": self.series.time(),
                 "velocity": values,
@@ -203,11 +203,10 @@ class ProbeAccumulator(BlockAccumulator):
             yield from swings(blocks, swing, AXES[k], expected)
 
     def comparisons(self, peak: Any) -> list[Comparison]:
-        """Mean velocity, dominant frequency, Strouhal number."""
         mean: Any = of_mean(self.blocks)
         value: Array = mean.value
         found = [
-            Comparison(f"mean velocity v_{letter}", float(value[k]), float(mean.error[k]),
+            Comparison(f"mean velocity v_{letter}", value[k], mean.error[k],
                        unit="a/tau")
             for k, letter in enumerate(AXES[: self.dimension])
         ]  # fmt: skip

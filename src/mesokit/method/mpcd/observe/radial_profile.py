@@ -14,12 +14,7 @@ from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import FINE, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.shells import (
-    Array,
-    ShellAccumulator,
-    shell_edges,
-    shell_volumes,
-)
+from mesokit.method.mpcd.observe.shared.shells import Array, ShellAccumulator, shell_volumes
 from mesokit.observe.shared.short_run import ENOUGH_FOR_CURVATURE, of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.observable import Observable, accumulator_of
@@ -42,6 +37,7 @@ class RadialProfile(Observable):
     quantity: Literal["radial-profile"] = tag("radial-profile")
     asks_transport: ClassVar[bool] = True
     of_built_up_flow: ClassVar[bool] = True
+    drawing = "profile"
     of: Literal["azimuthal", "axial", "radial", "density", "temperature"] = param(
         "azimuthal", doc="what: a velocity component, 'density' or 'temperature'"
     )
@@ -70,39 +66,34 @@ class RadialProfile(Observable):
 class RadialProfileAccumulator(ShellAccumulator):
     """Sums in rings; velocities are radial, azimuthal and, in 3D, axial."""
 
-    def __init__(self, observable: RadialProfile, case: Case) -> None:
-        self.observable, self.name = observable, observable.label
-        self.flow = round_flow(case)
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
+        self.flow = RoundFlow(case)
         self.axis = AXES.index(observable.axis) if observable.axis else self.flow.axis
-        d, size = case.box.dimension, np.array(case.box.size, float)
         self.plane = [k % 3 for k in (self.axis + 1, self.axis + 2)]
-        centre = observable.centre or self.flow.centre
-        self.centre = np.array(centre)[self.plane]
+        self.centre = np.array(observable.centre or self.flow.centre)[self.plane]
         self.known = self.axis == self.flow.axis and np.allclose(
             self.centre, np.array(self.flow.centre)[self.plane]
         )
-        lengths = size[self.plane]
+        lengths = np.array(case.box.size, float)[self.plane]
         open_axes = [k not in setting.closed_axes(case) for k in self.plane]
         self.lengths = np.where(open_axes, lengths, np.inf)
         inner, outer = self.flow.radii if self.known else (0.0, np.inf)
         inner, outer = observable.radii or (inner, min(outer, lengths.min() / 2))
-        super().__init__(case, shell_edges(inner, outer, observable.bins_per_cell), d)
+        self.prepare_shells(inner, outer)
 
     def locate(self, r: Array) -> tuple[Array, Array]:
-        """Distance from the axis, and the way from it to the nearest image."""
         arm = r[:, self.plane] - self.centre
         arm -= np.where(np.isfinite(self.lengths), self.lengths, 0.0) * np.round(arm / self.lengths)
         return np.hypot(arm[:, 0], arm[:, 1]), arm
 
     def along(self, place: Array, v: Array) -> Array:
-        """Radial, azimuthal and axial velocity."""
         out = (place / np.maximum(np.hypot(*place.T), 1e-12)[:, None]).T
         first, second = v[:, self.plane[0]], v[:, self.plane[1]]
         turned = [out[0] * first + out[1] * second, out[0] * second - out[1] * first]
         return np.stack(turned + ([v[:, self.axis]] if self.dimension == 3 else []))
 
     def result(self) -> Result:
-        """The profile, what is expected of it, and the fit that suits it."""
         of, expected, curve = self.observable.of, self.expected(), None
         found: list[Comparison] = []
         kind = self.flow.kind if self.known else "rest"
@@ -116,23 +107,18 @@ class RadialProfileAccumulator(ShellAccumulator):
             if of == self.flow.component and self.known and kind in FITS:
                 curve, found = FITS[kind](self, value)
             if of == "temperature":
-                found = self.mean_temperature(value)
+                found = [self.mean_temperature(value)]
             if not self.approximate():
                 found += self.chi_square(value, expected, "against theory")
-        return Result(
-            quantity="radial-profile",
-            drawing="profile",
-            name=self.name,
-            x={"r": self.centres},
-            value=value.value,
-            error=value.error,
+        return self.report(
+            {"r": self.centres},
+            value,
+            found,
             label=label,
             units={"value": self.unit(of), "r": "a"},
             expected=expected,
             fit=curve,
             theory=self.flow.name(of) if self.known else "rest",
-            comparisons=tuple(found),
-            samples=self.blocks.count,
             extra={"of": of, "kind": kind, "edges": self.edges},
         )
 
@@ -163,16 +149,16 @@ class RadialProfileAccumulator(ShellAccumulator):
             return np.zeros(self.bins)
         return ring_average(self.flow.profile, self.edges)
 
-    def mean_temperature(self, temperature: Estimate) -> list[Comparison]:
+    def mean_temperature(self, temperature: Estimate) -> Comparison:
         """Of all rings together."""
         weight = self.crowd / self.crowd.sum()
-        value, error = temperature.scalar(weight @ temperature.value, weight)
+        value, error = temperature.total(weight)
         kT = self.case.fluid.kT
         error = setting.with_start(self.case, error, kT, self.blocks.series)
         note = setting.temperature_note(self.case)
         if setting.driven(self.case):
             note = "approximate: shear in the rings and cells adds to it"
-        return [Comparison("mean temperature", value, error, kT, "m a^2/tau^2", note)]
+        return Comparison("mean temperature", value, error, kT, "m a^2/tau^2", note)
 
     @functools.cached_property
     def volumes(self) -> Array:
@@ -262,11 +248,6 @@ class RoundFlow:
         if of in UNITS:
             return {"density": "ideal gas", "temperature": "kT of the case"}[of]
         return self.kind
-
-
-def round_flow(case: Case) -> RoundFlow:
-    """The flow about an axis in this case."""
-    return RoundFlow(case)
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)

@@ -27,6 +27,9 @@ class Snapshots(Observable):
 
     quantity: Literal["snapshots"] = tag("snapshots")
     in_open_box: ClassVar[bool] = True
+    drawing = "snapshots"
+    value_label = "positions and velocities"
+    units: ClassVar[dict[str, str]] = {"position": "a", "velocity": "a/tau", "time": "tau"}
     steps: Many[int] = param((0, 1, 10), doc="steps after the warm-up, each a multiple of every")
     axes: tuple[Axis, Axis] = param(("x", "y"), doc="the two axes of the pictures")
     particles: int = param(1000, doc="particles shown, evenly spread over their numbers", ge=1)
@@ -65,8 +68,8 @@ class SnapshotsAccumulator(BlockAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("seen", "times", "looks")
     added: ClassVar[tuple[str, ...]] = ("looks",)
 
-    def __init__(self, observable: Snapshots, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.columns = [case.box.index(axis) for axis in observable.axes]
         self.ids = spread_ids(observable.particles, case.particles)
         self.seen = np.zeros((0, len(self.ids), 4))
@@ -74,7 +77,6 @@ class SnapshotsAccumulator(BlockAccumulator):
         self.looks = 0
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Look, if this is one of the steps."""
         self.looks += 1
         step = fluid.step - self.case.run.warmup
         if step not in self.observable.steps or step in self.times[:, 0]:
@@ -85,20 +87,13 @@ class SnapshotsAccumulator(BlockAccumulator):
         self.times = np.concatenate([self.times, [[step, fluid.time]]])
 
     def result(self) -> Result:
-        """What was seen, in the order of the steps."""
         first, second = self.observable.axes
         names = [first, second, f"v_{first}", f"v_{second}"]
         x = {"step": self.times[:, 0].astype(np.int64), "particle": self.ids}
-        return Result(
-            quantity="snapshots",
-            drawing="snapshots",
-            name=self.name,
-            x=x | {"component": np.array(names)},
-            value=self.seen.copy(),
-            error=np.full(self.seen.shape, np.nan),
-            label="positions and velocities",
-            units={"value": "", "position": "a", "velocity": "a/tau", "time": "tau"},
-            comparisons=tuple(self._comparisons()),
+        return self.report(
+            x | {"component": np.array(names)},
+            (self.seen.copy(), np.full(self.seen.shape, np.nan)),
+            self._comparisons(),
             samples=self.looks,
             extra={
                 "time": self.times[:, 1].copy(),
@@ -113,7 +108,6 @@ class SnapshotsAccumulator(BlockAccumulator):
         return np.searchsorted(np.cumsum(counts), self.ids, side="right").astype(np.int64)
 
     def _comparisons(self) -> list[Comparison]:
-        """Of particles that fly freely nothing but the place changes, and that evenly."""
         case, seen = self.case, self.seen
         free = not (case.fluid.collision.acts or setting.driven(case) or case.walls)
         if not free or case.fluid.molecule is not None or len(seen) < 2:

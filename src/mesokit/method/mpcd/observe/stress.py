@@ -1,5 +1,6 @@
 """The stress of the fluid, kinetic, collisional, of bonds: pressure, and viscosity under shear."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -15,12 +16,11 @@ from mesokit.method.mpcd.expected.molecules import (
     springs_in,
     stress_in_shear,
 )
-from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
-from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
+from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator, kept
 from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result, joined
 
 PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
 ROUSE = "Rouse molecules, beads with the friction of free particles"
@@ -40,6 +40,8 @@ class Stress(Observable):
 
     quantity: Literal["stress"] = tag("stress")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
+    drawing = "tensor"
+    value_label = "stress"
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
 
     def check(self, case: Case) -> None:
@@ -52,29 +54,30 @@ class Stress(Observable):
 class StressAccumulator(TensorAccumulator):
     """Block averages of both parts and their sum."""
 
-    def __init__(self, observable: Stress, case: Case) -> None:
+    def prepare(self) -> None:
+        case = self.case
         self.bonded_beads = case.fluid.molecule is not None or case.solutes is not None
         self.given = PARTS[: 3 if self.bonded_beads else 2]
-        self.every = observable.every
         # numbers per cell of all that carries momentum, and of what moves as one
         self.carriers, self.wholes = setting.carriers(case)
         self.springs = springs_in(case)
-        super().__init__(observable, case, (*self.given, "total"))
+        self.parts = (*self.given, "total")
+        super().prepare()
 
     def observe(self, fluid: RunningFluid) -> None:
         parts = [fluid.stress[name] for name in self.given]
         self.blocks.add(np.stack([*parts, sum(parts[1:], parts[0])]))
 
     def result(self) -> Result:
-        """Tensors, pressure and viscosities."""
         theory = "molecular chaos, ideal gas" + (" of molecules" if self.bonded_beads else "")
         if self.case.box.steady_rate and self.bonded() is not None:
             theory = "molecules in shear"
-        return self.tensors("stress", "stress", UNIT[self.case.box.dimension], theory)
+        return self.tensors(theory, value=UNIT[self.case.box.dimension])
 
     def length(self) -> float:
         """Of a run."""
-        return self.blocks.count / self.blocks.series * self.every * self.case.fluid.timestep
+        samples = self.blocks.count / self.blocks.series
+        return samples * self.observable.every * self.case.fluid.timestep
 
     def short_run(self) -> str:
         """Where blocking cannot see how slowly bonds change: a note."""
@@ -174,9 +177,8 @@ class StressAccumulator(TensorAccumulator):
             return np.nan, np.nan, np.nan
         return c.viscosity_kinetic, c.viscosity_collisional, c.viscosity
 
-    def comparisons(self) -> list[Comparison]:
-        """Pressure, and under shear the viscosity with its parts."""
-        case, found = self.case, []
+    def comparisons(self) -> Iterator[Comparison]:
+        case = self.case
         mean, error = self.blocks.mean(), self.errors()
         rate = case.box.steady_rate
         if rate:
@@ -199,10 +201,10 @@ class StressAccumulator(TensorAccumulator):
                 if part < 0 and not note:
                     note = setting.chaos_is_off(case, nu, spread)
                 what, note = f"{name} from the stress", self.cautioned(note, part)
-                found.append(Comparison(what, value, spread, nu, "a^2/tau", note))
+                yield Comparison(what, value, spread, nu, "a^2/tau", note)
             if self.bonded_beads:
-                found.append(self.bond_part(scale))
-            found += self.normal_differences()
+                yield self.bond_part(scale)
+            yield from self.normal_differences()
         known = self.known()
         # a thermostat of cells takes a part of the shear for heat that is not there
         held = bool(rate) and setting.isothermal(case) and not self.bonded_beads
@@ -221,8 +223,7 @@ class StressAccumulator(TensorAccumulator):
         elif ideal * self.flights_in_shear() > 0.5 * spread:
             note = "approximate: of a fluid at rest, to which shear adds its square"
         note = self.cautioned(note)
-        found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d], note))
-        return found
+        yield Comparison("pressure", pressure, spread, ideal, UNIT[d], note)
 
     def flights_in_shear(self) -> float:
         """The share that shear adds to the pressure, by its size: the square of the shear rate
@@ -234,7 +235,7 @@ class StressAccumulator(TensorAccumulator):
     def cautioned(self, note: str, part: int = -1) -> str:
         """A note on a part, and what to say of its error bar."""
         short = self.short_run() if self.bonds_in(part) else ""
-        return "; ".join(filter(None, (note, short)))
+        return joined(note, short)
 
     def bond_part(self, scale: float) -> Comparison:
         """What bonds add to the viscosity; `scale` is the mass density times the shear rate."""
@@ -247,27 +248,23 @@ class StressAccumulator(TensorAccumulator):
                 note = f"approximate: at zero shear rate; {ROUSE}"
         what = "bond part from the stress"
         note = self.cautioned(note)
-        return Comparison(what, float(value), float(abs(error)), expected, "a^2/tau", note)
+        return Comparison(what, value, abs(error), expected, "a^2/tau", note)
 
     def bonded(self) -> theory.ShearStress | None:
         """What Rouse's theory expects of a sheared fluid of molecules."""
         return None if self.case.fluid.molecule is None else stress_in_shear(self.case)
 
-    def normal_differences(self) -> list[Comparison]:
+    def normal_differences(self) -> Iterator[Comparison]:
         """First and, in 3D, second normal-stress difference of a sheared fluid."""
         bonded, d = self.bonded(), self.case.box.dimension
         known = (bonded.first, bonded.second) if bonded is not None else (np.nan, np.nan)
-        found = []
         for which, name in enumerate(("first", "second")[: d - 1]):
             weight = np.zeros((d, d))
             weight[which, which], weight[which + 1, which + 1] = 1.0, -1.0
-            found.append(
-                Comparison(
-                    f"{name} normal-stress difference",
-                    *self.summed(-1, weight),
-                    known[which],
-                    UNIT[d],
-                    self.cautioned(shear_note(self.case) if bonded else ""),
-                )
+            yield Comparison(
+                f"{name} normal-stress difference",
+                *self.summed(-1, weight),
+                known[which],
+                UNIT[d],
+                self.cautioned(shear_note(self.case) if bonded else ""),
             )
-        return found

@@ -36,6 +36,8 @@ class StressAutocorrelation(Observable):
 
     quantity: Literal["stress-autocorrelation"] = tag("stress-autocorrelation")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
+    drawing = "modulus"
+    value_label = "relaxation modulus G"
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     max_lag: int | None = param(
         None, doc="longest lag (as the run allows unless said)", unit="steps", ge=1
@@ -56,15 +58,15 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("correlator",)
     added: ClassVar[tuple[str, ...]] = ("runs",)
 
-    def __init__(self, observable: StressAutocorrelation, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         max_lag = None if observable.max_lag is None else observable.max_lag // observable.every
         d = case.box.dimension
         self.correlator = MultipleTau((d * (d - 1),), max_lag=max_lag, pooled=1)
         self.runs = 1  # that were pooled
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample. Rules that do not conserve angular momentum have no symmetric stress."""
+        # rules that do not conserve angular momentum have no symmetric stress
         stress = np.sum(list(fluid.stress.values()), axis=0)
         self.correlator.add(stress[~np.eye(len(stress), dtype=bool)])
 
@@ -89,7 +91,6 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         return np.concatenate(lags), joined
 
     def result(self) -> Result:
-        """G(t), its integral and its Fourier transforms."""
         time, modulus = self.modulus()
         known = modes_of_stress(self.case)
         bonds = None
@@ -100,18 +101,13 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         comparisons: list[Comparison] = []
         if len(time) > 3:
             comparisons, extra = self.integrals(time, modulus)
-        return Result(
-            quantity="stress-autocorrelation",
-            drawing="modulus",
-            name=self.name,
-            x={"time": time},
-            value=modulus.value,
-            error=modulus.error,
-            label="relaxation modulus G",
+        return self.report(
+            {"time": time},
+            modulus,
+            comparisons,
             units={"value": UNIT[self.case.box.dimension], "time": "tau"},
             expected=bonds,
             theory="Rouse, bonds alone",
-            comparisons=tuple(comparisons),
             samples=self.correlator.count,
             extra=extra,
         )

@@ -15,7 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import shear_note, springs_in
 from mesokit.method.mpcd.expected.rheometer import spreading_time, stress_of_history
-from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.method.mpcd.observe.shared.tensor import kept
 from mesokit.method.mpcd.observe.stress import UNIT
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
@@ -39,6 +39,8 @@ class StressInTime(Observable):
 
     quantity: Literal["stress-in-time"] = tag("stress-in-time")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
+    drawing = "stress in time"
+    value_label = "stress"
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     window: int = param(10, doc="steps that a point is the mean over", unit="steps", ge=1)
 
@@ -96,8 +98,9 @@ class StressInTimeAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "sums", "counts", "first", "samples")
 
-    def __init__(self, observable: StressInTime, case: Case) -> None:
-        self.case, self.name, self.window = case, observable.label, observable.window
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
+        self.window = observable.window
         self.samples_of_window = observable.window // observable.every
         self.bonded = case.fluid.molecule is not None or case.solutes is not None
         self.mass = setting.mass_density(case) * case.box.volume
@@ -113,8 +116,7 @@ class StressInTimeAccumulator(BlockAccumulator):
         self.others: list[StressInTimeAccumulator] = []  # pooled with it
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample: the stress of a step belongs to the window in which the step ends."""
-        before = fluid.step - 1
+        before = fluid.step - 1  # a step's stress belongs to the window in which the step ends
         repetition, inside = divmod(before, self.period) if self.period else (0, before)
         row = inside // self.window
         if row >= self.rows:  # the run is longer than its case says
@@ -184,7 +186,6 @@ class StressInTimeAccumulator(BlockAccumulator):
         return rows, Estimate(mean, residuals, weights.astype(float))
 
     def result(self) -> Result:
-        """Stress by window, with theory."""
         rows, flat = self.estimate()
         shape = (len(rows), len(self.components))
         timestep, expected = self.case.fluid.timestep, self.expected(rows)
@@ -196,18 +197,13 @@ class StressInTimeAccumulator(BlockAccumulator):
         if many:
             known = flat.error.reshape(shape) * student(len(flat.weights))
             error = np.maximum(known, self.scatter(flat))
-        return Result(
-            quantity="stress-in-time",
-            drawing="stress in time",
-            name=self.name,
-            x={"time": edges.mean(axis=1), "component": np.array(self.components)},
-            value=flat.value.reshape(shape),
-            error=error,
-            label="stress",
+        return self.report(
+            {"time": edges.mean(axis=1), "component": self.components},
+            (flat.value.reshape(shape), error),
+            self.comparisons(rows, flat, expected) if many else (),
             units={"value": UNIT[self.case.box.dimension], "time": "tau", "component": ""},
             expected=expected,
             theory="Newtonian fluid" if self.case.fluid.molecule is None else "Rouse",
-            comparisons=tuple(self.comparisons(rows, flat, expected)) if many else (),
             samples=int(sum(one.samples[0] for one in (self, *self.others))),
             extra={
                 "rate": np.diff(strain, axis=1)[:, 0] / (self.window * timestep),
@@ -263,18 +259,17 @@ class StressInTimeAccumulator(BlockAccumulator):
 
     def comparisons(
         self, rows: NDArray[np.int64], flat: Estimate, expected: Array | None
-    ) -> list[Comparison]:
-        """By which factor the curves differ from those of theory, by least squares."""
+    ) -> Iterator[Comparison]:
         if expected is None:
-            return []
-        found, molecules = [], self.case.fluid.molecule is not None
+            return
+        molecules = self.case.fluid.molecule is not None
         for k, name in enumerate(self.components):
             weight = np.zeros(expected.shape)
             square = (expected[:, k] ** 2).sum()
             if not square > 0:
                 continue
             weight[:, k] = expected[:, k] / square
-            value, error = flat.scalar(flat.value @ weight.ravel(), weight.ravel())
+            value, error = flat.total(weight.ravel())
             error *= student(len(flat.weights))
             error = max(error, self.of_factor(rows, flat, weight[:, k], name))
             note = setting.chaos_is_off(self.case, 1.0, error)
@@ -285,5 +280,4 @@ class StressInTimeAccumulator(BlockAccumulator):
                     "approximate: of uniform shear, which takes "
                     f"{spreading_time(self.case):.2g} tau to spread from the images"
                 )
-            found.append(Comparison(f"{name} over theory", value, error, 1.0, "", note))
-        return found
+            yield Comparison(f"{name} over theory", value, error, 1.0, "", note)

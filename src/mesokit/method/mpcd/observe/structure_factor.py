@@ -46,6 +46,8 @@ class StructureFactor(Observable):
 
     quantity: Literal["structure-factor"] = tag("structure-factor")
     needs_fluid: ClassVar[bool] = False
+    drawing = "structure factor"
+    units: ClassVar[dict[str, str]] = {"q": "1/a"}
     of: Literal["beads", "particles", "chains"] | None = param(
         None, doc=f'{OF}; "chains": each molecule alone'
     )
@@ -90,8 +92,8 @@ class StructureFactorAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("means", "sums")
 
-    def __init__(self, observable: StructureFactor, case: Case) -> None:
-        self.name, self.case = observable.label, case
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.of, self.groups = default_of(case, observable.of), observable.chosen(case)
         self.kind = observable.kind
         alone = self.of == "chains"
@@ -168,22 +170,16 @@ class StructureFactorAccumulator(BlockAccumulator):
         return np.fmax(found, scatter_of_waves(each, self.lengths, self.members))
 
     def result(self) -> Result:
-        """S(q), beside Debye's sum or 1."""
         expected = self.expected()
         what = "chain" if self.of == "chains" else "all"
         bonded = max(group.length for group in self.groups) > 1
-        return Result(
-            quantity="structure-factor",
-            drawing="structure factor",
-            name=self.name,
-            x={"q": self.over_shells(self.lengths)},
-            value=self.means.mean(),
-            error=self.error(),
+        return self.report(
+            {"q": self.over_shells(self.lengths)},
+            (self.means.mean(), self.error()),
+            self.comparisons(expected),
             label="S(q) of one molecule" if what == "chain" else "S(q)",
-            units={"value": "", "q": "1/a"},
             expected=expected,
             theory="Debye" if bonded else "ideal gas",
-            comparisons=tuple(self.comparisons(expected)),
             samples=self.means.blocks.count,
             extra={"waves": self.members},
         )
@@ -213,15 +209,12 @@ class StructureFactorAccumulator(BlockAccumulator):
         return theory.gaussian_structure_factor(lengths, links, bond, d, group.length)
 
     def comparisons(self, expected: Array | None) -> list[Comparison]:
-        """Longest waves; and by which factor all of it differs from theory, by least squares."""
         mean, error = self.means.mean(), self.error()
         if not self.means.blocks.count:
             return []
         q = f"at q = {self.over_shells(self.lengths)[0]:.4g}"
         known = np.nan if expected is None else float(expected[0])
-        found = [
-            Comparison("S of the longest waves", float(mean[0]), float(error[0]), known, note=q)
-        ]
+        found = [Comparison("S of the longest waves", mean[0], error[0], known, note=q)]
         if expected is not None:
             weight = (expected / (expected**2).sum())[None]
             value, bar = float(self.means.mean(weight)[0]), float(self.means.error(weight)[0])

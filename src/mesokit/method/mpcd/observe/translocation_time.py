@@ -12,12 +12,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, flow_sign
 from mesokit.method.mpcd.expected.selection import KIND, molecule_of
-from mesokit.method.mpcd.observe.shared.events import (
-    EventAccumulator,
-    Words,
-    crossing,
-    require_still,
-)
+from mesokit.method.mpcd.observe.shared.events import EventAccumulator, crossing, require_still
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
@@ -72,11 +67,11 @@ class TranslocationTimeAccumulator(EventAccumulator):
     and `failed`, the number of those that drew back.
     """
 
-    def __init__(self, observable: TranslocationTime, case: Case) -> None:
-        words = Words(
-            "translocation-time", observable.label, "translocation time", "translocations"
-        )
-        super().__init__(case, words, "centres", observable.kind, observable.molecules)
+    lasting, events = "translocation time", "translocations"
+
+    def prepare(self) -> None:
+        super().prepare()
+        observable, case = self.observable, self.case
         self.axis = observable.axis_of(case)
         self.sign = flow_sign(case, self.axis)
         self.position = self.sign * observable.position
@@ -135,11 +130,9 @@ class TranslocationTimeAccumulator(EventAccumulator):
         return self.failed + int(self.now["failed"][0] if self.now else 0)
 
     def result(self) -> Result:
-        """The distribution of the times, the mean, and how often it was tried in vain."""
         return self.made(self.comparisons())
 
     def comparisons(self) -> Iterator[Comparison]:
-        """Mean time, number, and the share of the tries that went through."""
         value, error = self.durations.mean()
         yield Comparison("mean translocation time", value, error, unit="tau", note=self.note())
         yield self.counted()

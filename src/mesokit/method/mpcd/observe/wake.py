@@ -38,6 +38,8 @@ class Wake(Observable):
     quantity: Literal["wake"] = tag("wake")
     of_built_up_flow: ClassVar[bool] = True
     asks_transport: ClassVar[bool] = True
+    drawing = "centreline"
+    units: ClassVar[dict[str, str]] = {"value": "a/tau", "distance": "a"}
     solid: str | None = param(None, doc="name of the body (the first that is no plate unless said)")
     flow: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")
     width: float = param(1.0, doc="width of the strip", unit="a", gt=0)
@@ -137,8 +139,8 @@ class WakeAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "whole")
 
-    def __init__(self, observable: Wake, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.body = Standing(observable, case)
         reach = min(observable.reach or 5 * self.body.size, self.body.room)
         bins = max(round(reach * observable.bins_per_cell), 1)
@@ -174,7 +176,6 @@ class WakeAccumulator(BlockAccumulator):
         return place, [m * (body.sign * some.velocities[inside, body.axis]), m]
 
     def result(self) -> Result:
-        """The velocity behind the body, positive along the flow; distances from its rear."""
         sums, _ = self.blocks.sums()
         velocity = of_ratio(sums[:, 0], sums[:, 1])
         found: list[Comparison] = []
@@ -183,17 +184,11 @@ class WakeAccumulator(BlockAccumulator):
             found = self.comparisons(velocity)
             length = next((c.measured for c in found if c.what == "L_r/D"), 0.0) * self.body.size
         letter = AXES[self.body.axis]
-        return Result(
-            quantity="wake",
-            drawing="centreline",
-            name=self.name,
-            x={"distance": self.centres},
-            value=velocity.value,
-            error=velocity.error,
+        return self.report(
+            {"distance": self.centres},
+            velocity,
+            found,
             label=f"velocity v_{letter}",
-            units={"value": "a/tau", "distance": "a"},
-            comparisons=tuple(found),
-            samples=self.blocks.count,
             extra={
                 "edges": self.edges,
                 "size": self.body.size,
@@ -210,7 +205,6 @@ class WakeAccumulator(BlockAccumulator):
         return float(of_mean(self.whole).value) / mass
 
     def comparisons(self, velocity: Estimate) -> list[Comparison]:
-        """Velocity next to the rear, and how far the fluid flows back."""
         first = (self.edges[1:] <= 1.0 + 1e-9) * 1.0
         first[0] = 1.0
         first /= first.sum()

@@ -10,6 +10,8 @@ from mesokit.seam.estimate import Estimate
 from mesokit.statistics import MultipleTau
 
 Array = NDArray[np.floating[Any]]
+LOWEST = (0.5, 0.2)  # of the correlation, that a fit looks at: later lags add little but noise
+FEWEST = 4  # lags; the lower limit serves where the sampling is too coarse for the upper one
 DRAWS = 400  # of noise
 BEYOND = 1.4  # times the root mean square of the largest of noise: what is none of it
 
@@ -84,3 +86,19 @@ def fit_curve(
     ]
     matrix = np.linalg.pinv(np.stack(slopes, axis=1))
     return Estimate(parameters, curve.residuals[:, use] @ matrix.T, curve.weights)
+
+
+def fit_decay(
+    time: Array, curve: Estimate, late: NDArray[np.bool_], below: float = np.inf
+) -> Estimate | None:
+    """Rate and amplitude (2,) of an exponential, fitted to the points that are `late` enough, as
+    far as the correlation is above noise; None where these are too few, or end above `below`."""
+    for lowest in LOWEST:
+        noise = np.flatnonzero(~(curve.value > lowest))
+        use = (np.arange(len(time)) < (noise[0] if len(noise) else len(time))) & late
+        if use.sum() >= FEWEST:
+            break
+    if use.sum() < 3 or curve.value[use][-1] >= below:
+        return None
+    start = [-np.log(curve.value[use][-1]) / time[use][-1], 1.0]
+    return fit_curve(time, curve, lambda t, rate, size: size * np.exp(-rate * t), start, use)

@@ -102,7 +102,7 @@ class DensityInSlices:
         square = (away - length * np.rint(away / length)) ** 2 / expected.sum()
         value, error = density.scalar(square @ density.value, square)
         what = f"mean square distance from the middle of the traps along {profile.observable.axis}"
-        return Comparison(what, value, error, float(square @ expected), "a^2")
+        return Comparison(what, value, error, square @ expected, "a^2")
 
     def legend(self, profile: ProfileAccumulator) -> str:
         """What the theory is called in a figure."""

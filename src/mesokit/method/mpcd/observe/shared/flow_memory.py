@@ -10,7 +10,7 @@ from mesokit.case.case import Case
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.numbers import TIMES
-from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.method.mpcd.observe.shared.tensor import kept
 from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.method import BuildUp
 from mesokit.statistics import Blocks

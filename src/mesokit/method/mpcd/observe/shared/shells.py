@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.case import Case
 from mesokit.observe.shared.mode_chi_square import mode_chi_square
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, of_mean, of_ratio
@@ -22,10 +21,13 @@ NUMBER, MASS, ENERGY, MOMENTUM = 0, 1, 2, 3  # rows of the sums; momentum and wh
 class ShellAccumulator(BlockAccumulator):
     """Block sums of number, mass, m v^2 and momentum along some directions in each shell."""
 
-    def __init__(self, case: Case, edges: Array, directions: int) -> None:
-        self.case, self.edges, self.dimension = case, edges, case.box.dimension
-        self.centres, self.bins = (edges[1:] + edges[:-1]) / 2, len(edges) - 1
-        self.blocks = Blocks((MOMENTUM + directions, self.bins))
+    def prepare_shells(self, inner: float, outer: float) -> None:
+        """Make the sums, of shells of equal width and at least one."""
+        per_cell, self.dimension = self.observable.bins_per_cell, self.case.box.dimension
+        self.bins = max(round((outer - inner) * per_cell), 1)
+        self.edges = np.linspace(inner, outer, self.bins + 1)
+        self.centres = (self.edges[1:] + self.edges[:-1]) / 2
+        self.blocks = Blocks((MOMENTUM + self.dimension, self.bins))
 
     @abstractmethod
     def locate(self, r: Array) -> tuple[Array, Array]:
@@ -96,11 +98,6 @@ class ShellAccumulator(BlockAccumulator):
         _, samples = self.blocks.sums()
         scaled = Estimate(estimate.value * root, estimate.residuals * root, samples.astype(float))
         return mode_chi_square(scaled, expected * root, periodic=False, note=note)
-
-
-def shell_edges(inner: float, outer: float, per_cell: int) -> Array:
-    """Shells of equal width, about `per_cell` in a cell and at least one."""
-    return np.linspace(inner, outer, max(round((outer - inner) * per_cell), 1) + 1)
 
 
 def shell_volumes(
