@@ -147,7 +147,7 @@ class BlockAccumulator(ABC):
     blocks: Blocks
 
     def __init__(self, observable: Any, case: Case) -> None:
-        self.observable, self.case = observable, case
+        self.observable, self.case, self.name = observable, case, observable.label
         self.prepare()
 
     def prepare(self) -> None:  # noqa: B027  # a subclass may have an __init__ instead

@@ -82,12 +82,8 @@ class MoleculeHistogram(Observable):
             raise CaseError(f"length: no effect with of = {self.of!r}; only with of = 'centre'")
         if self.largest is not None and self.of not in ("gyration", "end-to-end"):
             raise CaseError(f"largest: no effect with of = {self.of!r}; leave it out")
-        if self.of == "centre" and self.axis_of(case) == 0 and case.box.sheared:
+        if self.of == "centre" and flow_axis(case, self.axis) == 0 and case.box.sheared:
             raise CaseError("of = 'centre': not along 'x' under shear, whose images slide")
-
-    def axis_of(self, case: Case) -> int:
-        """Number of the axis."""
-        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
 
 
 @accumulator_of(MoleculeHistogram)
@@ -98,7 +94,7 @@ class MoleculeHistogramAccumulator(BlockAccumulator):
         observable, case = self.observable, self.case
         self.group = group_of(case, "beads", observable.kind)
         self.beads = self.group.beads(observable.molecules)
-        self.axis, self.dimension = observable.axis_of(case), case.box.dimension
+        self.axis, self.dimension = flow_axis(case, observable.axis), case.box.dimension
         self.mean = mean_shape(case, observable.kind, self.group)
         self.edges = np.linspace(*self.limits(), FINE + 1)
         self.means = MeansOverMolecules(len(self.beads), FINE)

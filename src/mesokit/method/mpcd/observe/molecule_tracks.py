@@ -70,8 +70,7 @@ class MoleculeTracksAccumulator(BlockAccumulator):
         self.group = group_of(case, "beads", observable.kind)
         self.beads = self.group.beads(observable.molecules)
         self.number, self.dimension = len(self.beads), case.box.dimension
-        axis = observable.axis
-        self.axis = flow_axis(case) if axis is None else case.box.index(axis)
+        self.axis = flow_axis(case, observable.axis)
         molecule = self.group.molecule
         self.chain = molecule is not None and molecule.topology == "chain"
         width = self.number * len(self.components)
@@ -134,19 +133,15 @@ class MoleculeTracksAccumulator(BlockAccumulator):
 
     def comparisons(self, gyration: float, ends: float) -> Iterator[Comparison]:
         mean, error = self.means.mean().tolist(), self.means.error().tolist()
-        yield Comparison(
-            "mean square radius of gyration", mean[0], error[0], gyration, "a^2", self.note()
-        )
-        rest = 0.0 if undisturbed(self.case) else np.nan
+        rest, note = 0.0 if undisturbed(self.case) else np.nan, self.note()
+        rows = [("mean square radius of gyration", 0, gyration, "a^2")]
         if self.chain:
-            yield Comparison(
-                "mean square end-to-end distance", mean[1], error[1], ends, "a^2", self.note()
-            )
-            what = f"orientation along {AXES[self.axis]}"
-            yield Comparison(what, mean[2], error[2], rest, note=self.note())
+            rows.append(("mean square end-to-end distance", 1, ends, "a^2"))
+            rows.append((f"orientation along {AXES[self.axis]}", 2, rest, ""))
         for k in range(self.dimension):
-            what = f"velocity of centres along {AXES[k]}"
-            yield Comparison(what, mean[3 + k], error[3 + k], rest, "a/tau", self.note())
+            rows.append((f"velocity of centres along {AXES[k]}", 3 + k, rest, "a/tau"))
+        for what, k, known, unit in rows:
+            yield Comparison(what, mean[k], error[k], known, unit, note)
 
     def note(self) -> str:
         """How many molecules are behind an error bar, where they are few."""

@@ -196,8 +196,7 @@ class StressAccumulator(TensorAccumulator):
                     nu, note = bonded.viscosity / setting.mass_density(case), shear_note(case)
                 elif self.bonded_beads:
                     note = IN_SHEAR if part < 0 else OF_PART
-                value = float(mean[part, 0, 1] / scale)
-                spread = float(error[part, 0, 1] / abs(scale))
+                value, spread = mean[part, 0, 1] / scale, error[part, 0, 1] / abs(scale)
                 if part < 0 and not note:
                     note = setting.chaos_is_off(case, nu, spread)
                 what, note = f"{name} from the stress", self.cautioned(note, part)
@@ -205,7 +204,6 @@ class StressAccumulator(TensorAccumulator):
             if self.bonded_beads:
                 yield self.bond_part(scale)
             yield from self.normal_differences()
-        known = self.known()
         # a thermostat of cells takes a part of the shear for heat that is not there
         held = bool(rate) and setting.isothermal(case) and not self.bonded_beads
         warm = (setting.warming(case) or 0.0) * rate**2 if held else 0.0
@@ -216,14 +214,13 @@ class StressAccumulator(TensorAccumulator):
         d = case.box.dimension
         pressure, spread = self.summed(-1, -np.eye(d) / d)
         spread = setting.with_start(case, spread, ideal, self.blocks.series)
-        ideal = ideal if known else np.nan
+        ideal = ideal if self.known() else np.nan
         note = ""
         if case.box.sheared and self.bonded_beads:
             note = shear_note(case) if np.isfinite(ideal) else IN_SHEAR
         elif ideal * self.flights_in_shear() > 0.5 * spread:
             note = "approximate: of a fluid at rest, to which shear adds its square"
-        note = self.cautioned(note)
-        yield Comparison("pressure", pressure, spread, ideal, UNIT[d], note)
+        yield Comparison("pressure", pressure, spread, ideal, UNIT[d], self.cautioned(note))
 
     def flights_in_shear(self) -> float:
         """The share that shear adds to the pressure, by its size: the square of the shear rate
@@ -234,8 +231,7 @@ class StressAccumulator(TensorAccumulator):
 
     def cautioned(self, note: str, part: int = -1) -> str:
         """A note on a part, and what to say of its error bar."""
-        short = self.short_run() if self.bonds_in(part) else ""
-        return joined(note, short)
+        return joined(note, self.short_run() if self.bonds_in(part) else "")
 
     def bond_part(self, scale: float) -> Comparison:
         """What bonds add to the viscosity; `scale` is the mass density times the shear rate."""
@@ -243,11 +239,9 @@ class StressAccumulator(TensorAccumulator):
         known, expected, note = bond_viscosity(self.case), np.nan, ""
         if known is not None:
             expected = known / setting.mass_density(self.case)
-            note = shear_note(self.case)
-            if not self.bonded():
-                note = f"approximate: at zero shear rate; {ROUSE}"
-        what = "bond part from the stress"
-        note = self.cautioned(note)
+            at_rest = f"approximate: at zero shear rate; {ROUSE}"
+            note = shear_note(self.case) if self.bonded() else at_rest
+        what, note = "bond part from the stress", self.cautioned(note)
         return Comparison(what, value, abs(error), expected, "a^2/tau", note)
 
     def bonded(self) -> theory.ShearStress | None:
@@ -258,13 +252,9 @@ class StressAccumulator(TensorAccumulator):
         """First and, in 3D, second normal-stress difference of a sheared fluid."""
         bonded, d = self.bonded(), self.case.box.dimension
         known = (bonded.first, bonded.second) if bonded is not None else (np.nan, np.nan)
+        note = self.cautioned(shear_note(self.case) if bonded else "")
         for which, name in enumerate(("first", "second")[: d - 1]):
             weight = np.zeros((d, d))
             weight[which, which], weight[which + 1, which + 1] = 1.0, -1.0
-            yield Comparison(
-                f"{name} normal-stress difference",
-                *self.summed(-1, weight),
-                known[which],
-                UNIT[d],
-                self.cautioned(shear_note(self.case) if bonded else ""),
-            )
+            what, found = f"{name} normal-stress difference", self.summed(-1, weight)
+            yield Comparison(what, *found, known[which], UNIT[d], note)

@@ -54,11 +54,7 @@ class TransitTime(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without molecules, and for an axis along which images slide."""
         group_of(case, self.of, self.kind)
-        require_still(case, self.axis_of(case), "axis")
-
-    def axis_of(self, case: Case) -> int:
-        """Number of the axis."""
-        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
+        require_still(case, flow_axis(case, self.axis), "axis")
 
 
 @accumulator_of(TransitTime)
@@ -74,7 +70,7 @@ class TransitTimeAccumulator(EventAccumulator):
 
     def prepare(self) -> None:
         super().prepare()
-        self.axis = self.observable.axis_of(self.case)
+        self.axis = flow_axis(self.case, self.observable.axis)
         self.sign = flow_sign(self.case, self.axis)
         self.length = self.observable.length or unit_cell(self.case, self.axis)
         self.velocity = MeansOverMolecules(len(self.beads), 1, self.everything)

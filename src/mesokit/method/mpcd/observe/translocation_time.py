@@ -45,17 +45,13 @@ class TranslocationTime(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without molecules, and for an axis along which images slide."""
         molecule_of(case, self.quantity, self.kind)
-        axis = self.axis_of(case)
+        axis = flow_axis(case, self.axis)
         require_still(case, axis, "axis")
         if not 0 <= self.position <= case.box.size[axis]:
             raise CaseError(
                 f"position = {self.position:g}: outside the box; expected 0 to "
                 f"{case.box.size[axis]:g}, its length along {AXES[axis]}"
             )
-
-    def axis_of(self, case: Case) -> int:
-        """Number of the axis."""
-        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
 
 
 @accumulator_of(TranslocationTime)
@@ -72,7 +68,7 @@ class TranslocationTimeAccumulator(EventAccumulator):
     def prepare(self) -> None:
         super().prepare()
         observable, case = self.observable, self.case
-        self.axis = observable.axis_of(case)
+        self.axis = flow_axis(case, observable.axis)
         self.sign = flow_sign(case, self.axis)
         self.position = self.sign * observable.position
         self.length = observable.length or unit_cell(case, self.axis)
