@@ -144,6 +144,7 @@ class BlockAccumulator(ABC):
     added: ClassVar[tuple[str, ...]] = ()  # numbers, arrays and lists that pooling adds up
     observable: Any
     case: Case
+    name: str
     blocks: Blocks
 
     def __init__(self, observable: Any, case: Case) -> None:

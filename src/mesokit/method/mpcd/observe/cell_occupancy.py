@@ -54,19 +54,12 @@ class CellOccupancyAccumulator(BlockAccumulator):
         last = math.ceil(mean + REACH * math.sqrt(mean) + 2)
         self.numbers = np.arange(self.first, last + 1)
         self.probability = poisson.pmf(self.numbers, mean)
-        self.whole = self._whole()
+        self.whole = self.probability.copy()  # with the tails in the first and last bin
+        self.whole[0] = poisson.cdf(self.numbers[0], mean)
+        self.whole[-1] = poisson.sf(self.numbers[-1] - 1, mean)
         self.of = chi_square.classes(self.whole, int(self.cells.sum()))
         self.classes = chi_square.joined(self.whole, self.of)
         self.blocks = Blocks((len(self.numbers) + 3,))
-
-    def _whole(self) -> Array:
-        """Poisson probabilities (bins,), with the tails in the first and last bin."""
-        from scipy.stats import poisson
-
-        whole, mean = self.probability.copy(), self.case.fluid.density
-        whole[0] = poisson.cdf(self.numbers[0], mean)
-        whole[-1] = poisson.sf(self.numbers[-1] - 1, mean)
-        return np.asarray(whole)
 
     def observe(self, fluid: RunningFluid) -> None:
         (number,) = fluid.sums_of_particles(self.cell_of, len(self.cells), [1.0])
@@ -103,36 +96,23 @@ class CellOccupancyAccumulator(BlockAccumulator):
         return case.fluid.molecule is None and not (setting.gathered(case) or pressed.any())
 
     def _comparisons(self, mean: Array, error: Array) -> Iterator[Comparison]:
-        case, number = self.case, int(self.cells.sum())
-        part = number / free_volume(case)
-        note = ""
+        case, number, note = self.case, int(self.cells.sum()), ""
         if not self._even():
             note = "no theory of such a fluid"
         elif setting.obstructed(case) and setting.driven(case):
             note = "approximate: the flow makes the density uneven"
-        probability = self.classes
-        density = case.fluid.density
         # the number of all particles is fixed: of each class, its covariance with the number
+        density, known = case.fluid.density, self._even()
         away = chi_square.joined(self.whole * (self.numbers - density), self.of)
-        lost = part * chi_square.taken(away / math.sqrt(density), probability)
-        nothing = not self._even()
-        spread = 1.0 - 1.0 / number  # about the mean of the sample, whatever others hold
-        yield Comparison(
-            "variance of the number over its mean",
-            mean[1] / mean[0],
-            error[1] / mean[0],
-            math.nan if nothing else spread,
-            "",
-            note,
-        )
-        yield Comparison(
-            "mean chi-square of the number",
-            mean[2],
-            error[2],
-            math.nan if nothing else len(probability) - 1.0 - lost,
-            "",
-            note or f"Poisson, {len(probability)} classes",
-        )
+        part = number / free_volume(case)
+        lost = part * chi_square.taken(away / math.sqrt(density), self.classes)
+        what, spread = "variance of the number over its mean", error[1] / mean[0]
+        # about the mean of the sample, whatever others hold
+        expected = 1.0 - 1.0 / number if known else math.nan
+        yield Comparison(what, mean[1] / mean[0], spread, expected, "", note)
+        expected = len(self.classes) - 1.0 - lost if known else math.nan
+        note = note or f"Poisson, {len(self.classes)} classes"
+        yield Comparison("mean chi-square of the number", mean[2], error[2], expected, "", note)
 
 
 def _whole_cells(case: Case) -> NDArray[np.bool_]:

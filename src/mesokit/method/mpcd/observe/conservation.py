@@ -49,6 +49,9 @@ class ConservationAccumulator(BlockAccumulator):
         case = self.case
         self.dimension = case.box.dimension
         self.bonded = case.fluid.molecule is not None or case.solutes is not None
+        driven, self.forgets = setting.driven(case), forgets(case)  # of a random solvent
+        self.conserves_momentum = not (case.walls or driven or self.forgets)
+        self.conserves_energy = self.conserves_momentum and not setting.isothermal(case)
         # number, momentum, the potential energy of bonds and pairs, kinetic energy, temperature
         width = 3 + self.dimension + self.bonded
         self.blocks = Blocks((width,))
@@ -121,46 +124,33 @@ class ConservationAccumulator(BlockAccumulator):
                 "step": rows[:, 0].copy(),
                 "mean": self.blocks.mean(),
                 "mean_error": self.blocks.error(),
-                "conserves_momentum": int(self.conserves_momentum()),
-                "conserves_energy": int(self.conserves_energy()),
+                "conserves_momentum": int(self.conserves_momentum),
+                "conserves_energy": int(self.conserves_energy),
                 "driven": int(setting.driven(self.case)),
                 "not_steady": self._not_steady(),
             },
         )
 
-    def forgets(self) -> bool:
-        """Whether the solvent takes momentum and energy, and forgets them."""
-        return forgets(self.case)
-
-    def conserves_momentum(self) -> bool:
-        """Nothing outside acts on the fluid."""
-        return not (self.case.walls or setting.driven(self.case) or self.forgets())
-
-    def conserves_energy(self) -> bool:
-        """No thermostat, and no work is done."""
-        return self.conserves_momentum() and not setting.isothermal(self.case)
-
     def _expected(self, value: Array, time: Array) -> Array:
         expected = np.full(value.shape, np.nan)
         expected[:, 0] = self.first[0]
-        if self.conserves_momentum():
+        if self.conserves_momentum:
             expected[:, 1 : self.dimension + 1] = self.first[1 : self.dimension + 1]
-        elif not self.forgets() and len(time):
+        elif not self.forgets and len(time):
             for axis in range(self.dimension):
                 expected[:, 1 + axis] = self._driven_momentum(axis, time - time[0])
-        if self.conserves_energy() and not self.bonded:
+        if self.conserves_energy and not self.bonded:
             expected[:, -2:] = self.first[-2:]
-        elif setting.isothermal(self.case) or self.forgets():
+        elif setting.isothermal(self.case) or self.forgets:
             energy, momentum = self._held_energy()
-            expected[:, -2] = energy
-            number = int(self.first[0])
-            expected[:, -1] = temperature(self.case, number, momentum, energy)
+            warmth = temperature(self.case, int(self.first[0]), momentum, energy)
+            expected[:, -2:] = energy, warmth
         return expected
 
     def _held_energy(self) -> tuple[float, Array]:
         """Kinetic energy and momentum of the steady flow of a fluid at kT, nan without theory."""
         case, d = self.case, self.dimension
-        mass, free = setting.superficial_mass(case), not (case.walls or self.forgets())
+        mass, free = setting.superficial_mass(case), not (case.walls or self.forgets)
         squares, momentum = 0.0, np.zeros(d)
         for axis in range(d):
             flow = setting.flow(case, axis)
@@ -195,11 +185,11 @@ class ConservationAccumulator(BlockAccumulator):
 
     def _comparisons(self) -> Iterator[Comparison]:
         fluid, exact = self.case.fluid, "exact: only rounding may show"
-        if self.conserves_momentum():
+        if self.conserves_momentum:
             # the total is zero, so relative to what the momenta would add up to without signs
             drift = self.drift[0] / (self.first[0] * fluid.mass * (fluid.kT / fluid.mass) ** 0.5)
             yield Comparison("largest drift of momentum", drift, 0.0, 0.0, "N sqrt(m kT)", exact)
-        if self.conserves_energy():
+        if self.conserves_energy:
             drift = self.drift[1] / float(self.first[self.dimension + 1 : -1].sum())
             if self.bonded:
                 kind, expected, note = "total", np.nan, "falls with the square of the sub-step"
@@ -207,7 +197,7 @@ class ConservationAccumulator(BlockAccumulator):
                 kind, expected, note = "kinetic", 0.0, exact
             what = f"largest relative drift of {kind} energy"
             yield Comparison(what, drift, 0.0, expected, "", note)
-        if (setting.isothermal(self.case) or self.forgets()) and not setting.driven(self.case):
+        if (setting.isothermal(self.case) or self.forgets) and not setting.driven(self.case):
             mean, error = self.blocks.mean()[-1], self.blocks.error()[-1]
             note = setting.temperature_note(self.case)
             yield Comparison("temperature", mean, error, fluid.kT, "", note)

@@ -87,16 +87,13 @@ class FlowRateAccumulator(BlockAccumulator):
         )
 
     def flow_memory(self) -> FlowMemory:
-        """How long the run is beside the memory of the flow."""
         momentum = float(self.blocks.mean()) * self.mass
         return flow_memory(self.case, self.axis, momentum, self.blocks, self.observable.every)
 
     def build_up(self) -> BuildUp | None:
-        """How the flow came from rest."""
         return build_up_of(self.flow_memory(), self.case)
 
     def error(self) -> float:
-        """Standard error of the mean velocity."""
         return max(float(self.blocks.error()), self.flow_memory().least / self.mass)
 
     def comparisons(self, known: float, name: str) -> Iterator[Comparison]:

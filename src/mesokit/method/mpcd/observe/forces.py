@@ -106,14 +106,14 @@ class ForcesAccumulator(BlockAccumulator):
             self.series.add(fluid.time - 0.5 * steps * self.case.fluid.timestep, taken)
 
     def result(self) -> Result:
-        size, expected = int(np.prod(self.shape)), self.expected()
+        expected, every = self.expected(), (self.blocks.mean(), self.errors())
+        value, error = (of[: np.prod(self.shape)].reshape(self.shape) for of in every)
+        plates = np.isin(range(len(self.bodies)), self.obstacles(), invert=True)
+        pivots = [body.pieces[0].pivot for body in solids_of(self.case).bodies]
         units = {name: FORCE if name[0] == "f" else TORQUE for name in self.components}
         return self.report(
             {"body": self.bodies, "component": self.components},
-            (
-                self.blocks.mean()[:size].reshape(self.shape),
-                self.errors()[:size].reshape(self.shape),
-            ),
+            (value, error),
             self.comparisons(expected),
             units=units,
             expected=expected,
@@ -122,12 +122,8 @@ class ForcesAccumulator(BlockAccumulator):
                 "coefficient": self.coefficient(),
                 "time": self.series.time(),
                 "series": self.series.values().reshape(-1, *self.shape),
-                "plates": np.isin(range(len(self.bodies)), self.obstacles(), invert=True).astype(
-                    int
-                ),
-                "pivot": np.array(
-                    [body.pieces[0].pivot for body in solids_of(self.case).bodies], float
-                ),
+                "plates": plates.astype(int),
+                "pivot": np.array(pivots, float),
             },
         )
 
@@ -148,9 +144,7 @@ class ForcesAccumulator(BlockAccumulator):
         case, count = self.case, self.blocks.count
         uniform = case.fluid.force.uniform(self.dimension) is not None
         # under shear images hand on momentum, and what heats has no one kT
-        known = uniform and not case.box.sheared
-        known = known and setting.at_kT(case)
-        if not known or not count:
+        if case.box.sheared or not (uniform and setting.at_kT(case) and count):
             return float("nan")
         mass = setting.mass_density(case) * free_volume(case)
         time = count * self.observable.every * case.fluid.timestep
@@ -161,12 +155,6 @@ class ForcesAccumulator(BlockAccumulator):
         solids = solids_of(self.case)
         walls = [self.case.walls[number] for number in solids.walls]
         return [i for i, wall in enumerate(walls) if not isinstance(wall, Plates)]
-
-    def plates(self) -> NDArray[np.int64]:
-        """1 for each body that is a plate, 0 for the others."""
-        plates = np.ones(len(self.bodies), np.int64)
-        plates[self.obstacles()] = 0
-        return plates
 
     def total(self) -> Array:
         """(d,): the force on the fluid, all of which the solids take in a steady flow.
@@ -208,19 +196,12 @@ class ForcesAccumulator(BlockAccumulator):
         coefficients = setting.transport(self.case)
         if coefficients is None:
             return np.nan, np.nan
-        rho = setting.mass_density(self.case)
-        one_sided = 0.0
+        one_sided, radii = 0.0, (gap.inner, gap.outer)
         if "angular momentum" not in self.case.fluid.collision.conserves:
-            one_sided = rho * coefficients.viscosity_collisional
+            one_sided = setting.mass_density(self.case) * coefficients.viscosity_collisional
         length = self.case.box.size[gap.axis] if self.dimension == 3 else 1.0
-        inner, outer = theory.taylor_couette_torque(
-            gap.inner,
-            gap.outer,
-            gap.inner_rate,
-            gap.outer_rate,
-            coefficients.dynamic_viscosity,
-            one_sided,
-        )
+        rates, eta = (gap.inner_rate, gap.outer_rate), coefficients.dynamic_viscosity
+        inner, outer = theory.taylor_couette_torque(*radii, *rates, eta, one_sided)
         return length * inner, length * outer
 
     def comparisons(self, expected: Array) -> Iterator[Comparison]:
@@ -230,7 +211,7 @@ class ForcesAccumulator(BlockAccumulator):
         for axis in map(int, np.flatnonzero(setting.uniform_acceleration(self.case))):
             every = np.zeros(mean.value.shape)
             every[force[:, axis]] = 1.0
-            value, error = mean.scalar(every @ mean.value, every)
+            value, error = mean.total(every)
             known, short = self.balanced_error(), self.flow_memory(axis).note
             note = "the force on the fluid; steady flow"
             if np.isnan(total[axis]):
@@ -248,10 +229,9 @@ class ForcesAccumulator(BlockAccumulator):
             if np.isfinite(expected[place]):
                 one = np.zeros(mean.value.shape)
                 one[force[place]] = 1.0
-                value, error = mean.scalar(mean.value[force[place]], one)
                 note = setting.caveat(self.case) or self.note_on_torque(int(body))
                 what = f"torque on {self.bodies[body]}"
-                yield Comparison(what, value, error, expected[place], TORQUE, note)
+                yield Comparison(what, *mean.total(one), expected[place], TORQUE, note)
         if self.observable.length is not None:
             yield from self.coefficients(mean, force, few)
 
@@ -264,10 +244,9 @@ class ForcesAccumulator(BlockAccumulator):
         for body, place in enumerate(places):
             gradient = np.zeros(mean.value.shape)
             gradient[place] = 100.0 / total
-            value, error = mean.scalar(gradient @ mean.value, gradient)
             what = f"share of {self.bodies[body]} along {AXES[axis]}"
             known = 100.0 * float(expected[body, axis] / total)
-            yield Comparison(what, value, error, known, "%", note)
+            yield Comparison(what, *mean.total(gradient), known, "%", note)
 
     def coefficient(self) -> float:
         """What turns a force along the flow into its coefficient, nan without a length."""
@@ -288,14 +267,6 @@ class ForcesAccumulator(BlockAccumulator):
             return "Taylor-Couette"
         return f"approximate: Taylor-Couette; cells at this radius take {30 / gap.inner:.2g} % off"
 
-    def slope(self) -> Array:
-        """Of the mean superficial velocity along the flow, by the numbers in a sample."""
-        size = int(np.prod(self.shape))
-        slope = np.zeros(size + self.dimension)
-        rho = setting.mass_density(self.case)
-        slope[size + self.along()] = 1.0 / (rho * np.prod(self.case.box.size))
-        return slope
-
     def along(self) -> int:
         given = self.observable.flow
         flow = setting.driven_axis(self.case) if given is None else AXES.index(given)
@@ -314,18 +285,17 @@ class ForcesAccumulator(BlockAccumulator):
 
         The error is that of blocks of time, whatever the momentum of all solids together does.
         """
-        slope = self.slope()
-        value, error = of_mean(self.blocks).scalar(slope @ self.blocks.mean(), slope)
+        slope, rho = np.zeros(self.blocks.shape), setting.mass_density(self.case)
+        slope[np.prod(self.shape) + self.along()] = 1.0 / (rho * np.prod(self.case.box.size))
+        value, error = of_mean(self.blocks).total(slope)
         memory = self.flow_memory(self.along())
         return value, max(error, memory.least * float(slope.max())), memory.note
 
     def flow_memory(self, axis: int) -> FlowMemory:
-        """How long the run is beside the memory of the flow along an axis."""
         momentum = float(self.blocks.mean()[int(np.prod(self.shape)) + axis])
         return flow_memory(self.case, axis, momentum, self.blocks, self.observable.every)
 
     def build_up(self) -> BuildUp | None:
-        """How the flow came from rest, where a uniform force drives it along one axis."""
         axis = setting.driven_axis(self.case)
         return None if axis is None else build_up_of(self.flow_memory(axis), self.case)
 
@@ -351,7 +321,7 @@ class ForcesAccumulator(BlockAccumulator):
             for axis in (flow, *(k for k in range(self.dimension) if k != flow)):
                 one: Array = np.zeros(mean.value.shape)
                 one[force[body, axis]] = scale
-                value, error = mean.scalar(one @ mean.value, one)
+                value, error = mean.total(one)
                 error = float(np.hypot(error, 2 * part * value))  # the coefficient goes as 1/U^2
                 if part > 1 / SURE:  # U may be zero
                     value = error = np.nan

@@ -186,14 +186,12 @@ class MoleculeHistogramAccumulator(BlockAccumulator):
         length, middle = self.edges[-1], (self.edges[1:] + self.edges[:-1]) / 2
         turns = np.angle(share @ np.exp(2j * np.pi * middle / length))
         away = middle - turns * length / (2 * np.pi)
-        square = ((away - length * np.rint(away / length)) ** 2)[None]
-        value, error = float(self.means.mean(square)[0]), float(self.means.error(square)[0])
+        square = (away - length * np.rint(away / length)) ** 2
         what = f"mean square distance from the middle of the traps along {AXES[self.axis]}"
-        expected, note = float(square[0] @ share), self.means.caution()
-        return Comparison(what, value, error, expected, "a^2", note)
+        expected, note = float(square @ share), self.means.caution()
+        return Comparison(what, *self.means.total(square), expected, "a^2", note)
 
     def words(self) -> str:
-        """What is counted."""
         words, axis = WORDS[self.observable.of], AXES[self.axis]
         if self.component:
             return f"end-to-end vector along {axis}"
@@ -204,8 +202,9 @@ class MoleculeHistogramAccumulator(BlockAccumulator):
         """What the theory is called in a figure."""
         if self.observable.of != "centre":
             return "ideal molecules"
-        in_traps = trapped(self.case, self.observable.kind)
-        return "Boltzmann in traps" if in_traps else "anywhere alike"
+        return (
+            "Boltzmann in traps" if trapped(self.case, self.observable.kind) else "anywhere alike"
+        )
 
     def coarse(self) -> tuple[int, int, int]:
         """First and last fine edge of the result, and fine bins in each of its bins."""
@@ -268,11 +267,11 @@ class MoleculeHistogramAccumulator(BlockAccumulator):
                 return
             yield self.spread(np.diff(known))
             return
-        middle = ((self.edges[1:] + self.edges[:-1]) / 2)[None]
-        value, error = float(self.means.mean(middle)[0]), float(self.means.error(middle)[0])
-        expected = np.nan if known is None else float(middle[0] @ np.diff(known))
+        middle = (self.edges[1:] + self.edges[:-1]) / 2
+        expected = np.nan if known is None else float(middle @ np.diff(known))
         outside = 1 - float(self.means.mean().sum())
         left = f"{100 * outside:.2g} % larger than largest are left out" if outside > 1e-9 else ""
         note = joined(left, self.means.caution())
         unit = "" if self.observable.of == "orientation" else "a"
-        yield Comparison(f"mean {self.words()}", value, error, expected, unit, note)
+        what, found = f"mean {self.words()}", self.means.total(middle)
+        yield Comparison(what, *found, expected, unit, note)

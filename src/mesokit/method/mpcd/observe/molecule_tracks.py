@@ -47,7 +47,6 @@ class MoleculeTracks(Observable):
             case.box.index(self.axis)
 
     def warnings(self, case: Case) -> Iterator[str]:
-        """Say when a run is too long for every sample to be kept."""
         kept = MoleculeTracksAccumulator(self, case)
         samples = case.run.steps // self.every + 1
         if samples > kept.rows:
@@ -81,7 +80,6 @@ class MoleculeTracksAccumulator(BlockAccumulator):
 
     @property
     def components(self) -> list[str]:
-        """What is known of a molecule at a time."""
         axes = AXES[: self.dimension]
         ends = ["end-to-end", *(f"R{a}" for a in axes), "orientation"] if self.chain else []
         return ["gyration", *ends, *axes, *(f"v{a}" for a in axes)]

@@ -78,28 +78,24 @@ class NormalModesAccumulator(BlockAccumulator):
             correlator.add(x)
 
     def interval(self) -> float:
-        """Time between two samples."""
         return self.observable.every * self.case.fluid.timestep
 
     def undisturbed(self) -> bool:
-        """Whether theory of a fluid at rest without walls applies."""
         return not (self.case.walls or setting.flowing(self.case))
 
     def result(self) -> Result:
         every = [c.correlation(normalised=True) for c in self.correlators.values()]
         lag, times = every[0].lag * self.interval(), self.times()[0]
+        # molecules that drag a fluid along that is not part of them
+        dragging = self.case.solutes is not None and self.case.solutes.solvent == "fluid"
         return self.report(
             {"time": lag, "mode": np.arange(1, self.count + 1)},
             every,
             self.comparisons(),
             expected=None if times is None else np.exp(-lag[:, None] / times.mode[: self.count]),
-            theory="Zimm, exp(-t/tau_p)" if self.dragging() else "Rouse, exp(-t/tau_p)",
+            theory=f"{'Zimm' if dragging else 'Rouse'}, exp(-t/tau_p)",
             samples=self.correlators["mode_0"].count,
         )
-
-    def dragging(self) -> bool:
-        """Whether molecules drag a fluid along that is not part of them."""
-        return self.case.solutes is not None and self.case.solutes.solvent == "fluid"
 
     def times(self) -> tuple[theory.RouseTimes | None, str]:
         """Relaxation times of theory, and what to say of them."""

@@ -75,7 +75,6 @@ class StressAccumulator(TensorAccumulator):
         return self.tensors(theory, value=UNIT[self.case.box.dimension])
 
     def length(self) -> float:
-        """Of a run."""
         samples = self.blocks.count / self.blocks.series
         return samples * self.observable.every * self.case.fluid.timestep
 

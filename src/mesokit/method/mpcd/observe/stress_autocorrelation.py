@@ -12,6 +12,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import shear_note
 from mesokit.method.mpcd.expected.rheometer import modes_of_stress
+from mesokit.method.mpcd.observe.shared.decay import averaged
 from mesokit.method.mpcd.observe.stress import UNIT
 from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
@@ -73,22 +74,8 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
     def modulus(self) -> tuple[Array, Estimate]:
         """Time (n,) and G(t) with what each block of time adds to it."""
         case = self.case
-        scale = case.box.volume / case.fluid.kT
-        lags: list[Array] = []
-        values: list[Array] = []
-        residuals: list[Array] = []
-        weights = np.zeros(0)
-        for lag, sums, counts in self.correlator.products(within_blocks=True):
-            total = counts.sum(axis=0)
-            mean = sums.sum(axis=0) / total
-            weights = counts[:, 0] if not lags else weights
-            lags.append(lag * self.observable.every * case.fluid.timestep)
-            values.append(scale * mean)
-            residuals.append(scale * (sums - mean * counts) / total)
-        if not lags:
-            return np.zeros(0), Estimate(np.zeros(0), np.zeros((0, 0)), weights)
-        joined = Estimate(np.concatenate(values), np.concatenate(residuals, axis=1), weights)
-        return np.concatenate(lags), joined
+        lags, found = averaged(self.correlator, case.box.volume / case.fluid.kT)
+        return lags * self.observable.every * case.fluid.timestep, found
 
     def result(self) -> Result:
         time, modulus = self.modulus()
@@ -97,14 +84,11 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         if known is not None and known[1] and len(time):
             bonds = theory.relaxation_modulus(time, *known[:2])
             bonds[time == 0] = np.nan  # where all collide as well
-        extra: dict[str, Any] = {}
-        comparisons: list[Comparison] = []
-        if len(time) > 3:
-            comparisons, extra = self.integrals(time, modulus)
+        found, extra = self.integrals(time, modulus) if len(time) > 3 else ([], {})
         return self.report(
             {"time": time},
             modulus,
-            comparisons,
+            found,
             units={"value": UNIT[self.case.box.dimension], "time": "tau"},
             expected=bonds,
             theory="Rouse, bonds alone",
@@ -156,7 +140,7 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         weight[: len(widths)] += widths / 2
         weight[1:end] += widths[: end - 1] / 2
         density = setting.mass_density(self.case)
-        value, spread = modulus.scalar(weight @ modulus.value, weight)
+        value, spread = modulus.total(weight)
         if not self.remembers() and (gas := setting.transport(self.case)) is not None:
             kinetic = gas.viscosity_kinetic * density  # which grows as kT
             spread = setting.with_start(self.case, spread, kinetic, self.runs)
@@ -166,12 +150,9 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         if known is not None:  # the integral to the same time
             bonds = sum(known[0] * tau * -math.expm1(-last / tau) for tau in known[1])
             expected = (known[2] + bonds) / density
-        found = [
-            Comparison(
-                "viscosity from the integral", value / density, spread / density, expected,
-                "a^2/tau", self.note(last, spread / density / expected),
-            )
-        ]  # fmt: skip
+        value, spread, what = value / density, spread / density, "viscosity from the integral"
+        note = self.note(last, spread / expected)
+        found = [Comparison(what, value, spread, expected, "a^2/tau", note)]
         longest = last if self.remembers() else time[-1]
         if longest < 2 * time[1]:
             return found, {}

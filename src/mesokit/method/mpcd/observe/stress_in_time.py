@@ -71,7 +71,6 @@ class StressInTime(Observable):
             raise CaseError(f"window = {self.window}: expected at least {least}, for so many steps")
 
     def warnings(self, case: Case) -> Iterator[str]:
-        """A run that sees no whole period."""
         steps = steps_of_period(case)
         if steps is not None and -(-case.run.warmup // steps) * steps + steps > (
             case.run.warmup + case.run.steps

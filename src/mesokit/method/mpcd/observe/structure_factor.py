@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -75,7 +75,6 @@ class StructureFactor(Observable):
             )
 
     def chosen(self, case: Case) -> list[Group]:
-        """Groups of molecules or particles."""
         of = default_of(case, self.of)
         if of == "chains":
             return groups_of(case, "beads", 1 if self.kind is None else self.kind)
@@ -126,29 +125,21 @@ class StructureFactorAccumulator(BlockAccumulator):
 
     def altogether(self, fluid: RunningFluid) -> NDArray[np.complex128]:
         """Sum of e^(-i q r) over all that are looked at, (K,)."""
-        found = np.zeros(len(self.waves), complex)
-        for group in self.groups:
-            of_fluid = group.first < self.case.particles
-            found += (self.of_particles if of_fluid else self.of_solutes)(fluid, group)
-        return found
-
-    def of_particles(self, fluid: RunningFluid, group: Group) -> NDArray[np.complex128]:
-        """The same of a group in the fluid, whose kinds have a mass each."""
-        found, start = np.zeros(len(self.waves), complex), 0
-        first, last = group.first, group.first + group.number * group.length
-        for kind in self.case.groups[0].kinds:
-            own = max(first, start), min(last, start + kind.number)
-            start += kind.number
-            if own[0] < own[1]:
-                found += fluid.modes(self.waves, *own)[0] / kind.mass
-        return found
-
-    def of_solutes(self, fluid: RunningFluid, group: Group) -> NDArray[np.complex128]:
-        """The same of solutes, few enough to ask for all."""
         found, step = np.zeros(len(self.waves), complex), max(1, CHUNK // len(self.waves))
-        r = fluid.positions(group.beads().ravel())
-        for start in range(0, len(r), step):
-            found += wave_sums(r[None, start : start + step], self.waves)[0]
+        for group in self.groups:
+            first, last = group.first, group.first + group.number * group.length
+            if first >= self.case.particles:  # solutes, few enough to read all
+                r = fluid.positions(group.beads().ravel())
+                pieces = (r[None, start : start + step] for start in range(0, len(r), step))
+                of_group = sum(wave_sums(piece, self.waves)[0] for piece in pieces)
+            else:
+                of_group, start = np.zeros(len(self.waves), complex), 0
+                for kind in self.case.groups[0].kinds:  # each has a mass
+                    own = max(first, start), min(last, start + kind.number)
+                    start += kind.number
+                    if own[0] < own[1]:
+                        of_group += fluid.modes(self.waves, *own)[0] / kind.mass
+            found += of_group
         return found
 
     def pool(self, other: StructureFactorAccumulator) -> None:
@@ -171,13 +162,12 @@ class StructureFactorAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         expected = self.expected()
-        what = "chain" if self.of == "chains" else "all"
         bonded = max(group.length for group in self.groups) > 1
         return self.report(
             {"q": self.over_shells(self.lengths)},
             (self.means.mean(), self.error()),
             self.comparisons(expected),
-            label="S(q) of one molecule" if what == "chain" else "S(q)",
+            label="S(q) of one molecule" if self.of == "chains" else "S(q)",
             expected=expected,
             theory="Debye" if bonded else "ideal gas",
             samples=self.means.blocks.count,
@@ -208,20 +198,17 @@ class StructureFactorAccumulator(BlockAccumulator):
         links, d = group.molecule.bonds, self.case.box.dimension
         return theory.gaussian_structure_factor(lengths, links, bond, d, group.length)
 
-    def comparisons(self, expected: Array | None) -> list[Comparison]:
+    def comparisons(self, expected: Array | None) -> Iterator[Comparison]:
         mean, error = self.means.mean(), self.error()
-        if not self.means.blocks.count:
-            return []
         q = f"at q = {self.over_shells(self.lengths)[0]:.4g}"
-        known = np.nan if expected is None else float(expected[0])
-        found = [Comparison("S of the longest waves", mean[0], error[0], known, note=q)]
+        known = np.nan if expected is None else expected[0]
+        yield Comparison("S of the longest waves", mean[0], error[0], known, note=q)
         if expected is not None:
-            weight = (expected / (expected**2).sum())[None]
-            value, bar = float(self.means.mean(weight)[0]), float(self.means.error(weight)[0])
+            weight = expected / (expected**2).sum()
+            value, bar = self.means.total(weight)
             if self.of != "chains":  # shells are independent
-                bar = max(bar, float(np.sqrt(((weight[0] * error) ** 2).sum())))
-            found.append(Comparison("S(q) over theory", value, bar, 1.0))
-        return found
+                bar = max(bar, float(np.sqrt(((weight * error) ** 2).sum())))
+            yield Comparison("S(q) over theory", value, bar, 1.0)
 
 
 def reachable(size: Sequence[float]) -> float:

@@ -95,7 +95,6 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         return np.stack([(direction * v).sum(axis=1) for direction in frame])
 
     def labels(self, of: str) -> tuple[str, str]:
-        """What is measured, and its unit."""
         return LABELS.get(of, (of, self.case.box.density_unit))
 
     def result(self) -> Result:
@@ -136,7 +135,6 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         return ""
 
     def expected(self) -> Array | None:
-        """In each shell; None without a theory."""
         fluid, driven = self.case.fluid, setting.driven(self.case)
         if self.observable.of == "density":
             return np.full(self.bins, fluid.density)

@@ -122,7 +122,6 @@ class TranslocationTimeAccumulator(EventAccumulator):
 
     @property
     def in_vain(self) -> int:
-        """How often a molecule drew back, in all runs."""
         return self.failed + int(self.now["failed"][0] if self.now else 0)
 
     def result(self) -> Result:

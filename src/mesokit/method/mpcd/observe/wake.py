@@ -1,6 +1,7 @@
 """Velocity on the centre line behind a body, and how far the fluid flows back there."""
 
 import math
+from collections.abc import Iterator
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -15,6 +16,7 @@ from mesokit.geometry.shape.cylinder import Cylinder
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import Solids, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.method.mpcd.observe.shared.shells import nearest, periods
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, fit, of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
@@ -66,7 +68,6 @@ class Wake(Observable):
         Standing(self, case)
 
     def body(self, case: Case) -> int | None:
-        """Number of the body in this case."""
         if not case.walls:
             return None
         solids = solids_of(case)
@@ -146,9 +147,7 @@ class WakeAccumulator(BlockAccumulator):
         bins = max(round(reach * observable.bins_per_cell), 1)
         self.edges = np.linspace(0.0, reach, bins + 1)
         self.centres = (self.edges[1:] + self.edges[:-1]) / 2
-        size = np.array(case.box.size, float)
-        closed = setting.closed_axes(case)
-        self.lengths = np.where([k in closed for k in range(len(size))], np.inf, size)
+        self.lengths = periods(case)
         self.blocks, self.whole = Blocks((2, bins)), Blocks()
 
     def observe(self, fluid: RunningFluid) -> None:
@@ -165,9 +164,7 @@ class WakeAccumulator(BlockAccumulator):
         length = self.lengths[body.axis]
         if np.isfinite(length):
             behind -= length * np.floor(behind / length)
-        off = r[:, body.across] - body.middle[body.across]
-        lengths = self.lengths[body.across]
-        off -= np.where(np.isfinite(lengths), lengths, 0.0) * np.round(off / lengths)
+        off = nearest(r[:, body.across] - body.middle[body.across], self.lengths[body.across])
         inside = (np.abs(off) <= 0.5 * self.observable.width).all(axis=1)
         inside &= (behind >= 0) & (behind < self.edges[-1])
         bins = len(self.centres)
@@ -181,14 +178,13 @@ class WakeAccumulator(BlockAccumulator):
         found: list[Comparison] = []
         length = np.nan
         if self.blocks.count and np.isfinite(velocity.value).all():
-            found = self.comparisons(velocity)
+            found = list(self.comparisons(velocity))
             length = next((c.measured for c in found if c.what == "L_r/D"), 0.0) * self.body.size
-        letter = AXES[self.body.axis]
         return self.report(
             {"distance": self.centres},
             velocity,
             found,
-            label=f"velocity v_{letter}",
+            label=f"velocity v_{AXES[self.body.axis]}",
             extra={
                 "edges": self.edges,
                 "size": self.body.size,
@@ -204,19 +200,16 @@ class WakeAccumulator(BlockAccumulator):
         mass = setting.mass_density(self.case) * float(np.prod(self.case.box.size))
         return float(of_mean(self.whole).value) / mass
 
-    def comparisons(self, velocity: Estimate) -> list[Comparison]:
+    def comparisons(self, velocity: Estimate) -> Iterator[Comparison]:
         first = (self.edges[1:] <= 1.0 + 1e-9) * 1.0
         first[0] = 1.0
-        first /= first.sum()
-        value, error = velocity.scalar(first @ velocity.value, first)
-        what = "velocity in the cell behind the body"
-        found = [Comparison(what, value, error, unit="a/tau")]
+        near = velocity.total(first / first.sum())
+        yield Comparison("velocity in the cell behind the body", *near, unit="a/tau")
         crossing = self.crossing(velocity)
-        if crossing is None:
-            return found
-        expected, note = self.expected()
-        value, error = (x / self.body.size for x in crossing)
-        return [*found, Comparison("L_r/D", value, error, expected, "", note)]
+        if crossing is not None:
+            value, error = (x / self.body.size for x in crossing)
+            expected, note = self.expected()
+            yield Comparison("L_r/D", value, error, expected, "", note)
 
     def crossing(self, velocity: Estimate) -> tuple[float, float] | None:
         """Where the velocity passes zero, and its error; None if the fluid does not flow back.

@@ -49,11 +49,9 @@ class SinceLast:
         return taken, steps
 
     def state(self) -> State:
-        """What was read last."""
         return self.last.state() | {"steps": np.array(self.steps)}
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self.last.restore(state)
         self.steps = int(state["steps"])
 

@@ -93,17 +93,14 @@ class Durations:
             self._counts[:] = kept, stride, number + 1, complete + row[2]
 
     def state(self) -> State:
-        """All it has to remember."""
         kept = self._counts[0]
         return pack(rows=self._rows[:kept], counts=self._counts, span=self._span)
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
         self._rows[: len(state["rows"])] = state["rows"]
         self._counts, self._span = np.array(state["counts"]), np.array(state["span"])
 
     def pool(self, other: Durations) -> None:
-        """Take in the events of an independent run: only to read from then on."""
         self._others += other.runs
 
     @property
@@ -122,7 +119,6 @@ class Durations:
 
     @property
     def lasted(self) -> Array:
-        """Durations of the whole events that are kept, (events,)."""
         return np.concatenate([run.lasted[run.whole] for run in self.runs])
 
     def sums(self, values: Array) -> Array:
@@ -293,7 +289,6 @@ class EventAccumulator(BlockAccumulator):
         )
 
     def counted(self) -> Comparison:
-        """How many events there were."""
         return Comparison(self.events, self.durations.number, np.nan)
 
 

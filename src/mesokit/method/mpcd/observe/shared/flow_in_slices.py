@@ -47,7 +47,6 @@ class FlowInSlices:
         return flowing[0] if len(flowing) == 1 else "y" if self.observable.axis == "x" else "x"
 
     def warnings(self) -> Iterator[str]:
-        """A component along which nothing flows."""
         yield from setting.across_the_flow(self.case, self.observable.component)
 
     def compared(self, profile: ProfileAccumulator, velocity: Estimate, sums: Array) -> Compared:
@@ -116,7 +115,6 @@ class Seen:
         return of_relaxations(times, blocks.series)
 
     def plates(self) -> tuple[float, float]:
-        """Velocities of the lower and the upper plate."""
         wall = slit_of(self.case)
         assert wall is not None  # only such flows are fitted so
         velocity, axis = setting.surface_velocity, self.component
@@ -177,7 +175,6 @@ def _couette(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
 
 
 def _lees_edwards(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
-    """Straight line: its slope."""
     basis = seen.powers(1)
     line = fit(velocity, basis, mass)
     slope, error = line.scalar(line.value[1], np.array([0.0, 1.0]))

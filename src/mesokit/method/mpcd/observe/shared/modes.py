@@ -95,7 +95,6 @@ class ModesAccumulator(BlockAccumulator):
             correlator.add(amplitude[members])
 
     def interval(self) -> float:
-        """Time between two samples."""
         return self.observable.every * self.case.fluid.timestep
 
     def curves(self) -> tuple[Array, list[Correlation]]:
@@ -122,7 +121,6 @@ class ModesAccumulator(BlockAccumulator):
 
     @property
     def samples(self) -> int:
-        """Samples of all runs."""
         return self.shells[0][1].count
 
     def equipartition(self) -> Comparison | None:

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
+from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.mode_chi_square import mode_chi_square
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, of_mean, of_ratio
@@ -46,7 +48,6 @@ class ShellAccumulator(BlockAccumulator):
 
     @property
     def units(self) -> list[float]:
-        """About the size of each term."""
         fluid, directions = self.case.fluid, self.blocks.shape[0] - MOMENTUM
         momentum = math.sqrt(fluid.mass * fluid.kT)
         return [1.0, fluid.mass, fluid.kT, *[momentum] * directions]
@@ -98,6 +99,17 @@ class ShellAccumulator(BlockAccumulator):
         _, samples = self.blocks.sums()
         scaled = Estimate(estimate.value * root, estimate.residuals * root, samples.astype(float))
         return mode_chi_square(scaled, expected * root, periodic=False, note=note)
+
+
+def periods(case: Case) -> Array:
+    """Length of the box along each axis, infinite where walls close it."""
+    closed = np.isin(range(case.box.dimension), list(setting.closed_axes(case)))
+    return np.where(closed, np.inf, np.array(case.box.size, float))
+
+
+def nearest(away: Array, lengths: Array) -> Array:
+    """Vectors (n, k) to the nearest image, of periods (k,) that may be infinite."""
+    return away - np.where(np.isfinite(lengths), lengths, 0.0) * np.round(away / lengths)
 
 
 def shell_volumes(
