@@ -92,3 +92,11 @@ def held(case: Case, kind: int | str) -> Held | None:
         np.diag(shape.covariance),
         None if alone is None else slowest / alone,
     )
+
+
+def squares_from_middle(places: Array, share: Array, length: float) -> Array:
+    """Square distances (n,) of places from the mean place of a distribution (n,) in a periodic
+    box, by the shorter way round."""
+    turns = np.angle(share @ np.exp(2j * np.pi * places / length))
+    away = places - turns * length / (2 * np.pi)
+    return np.asarray((away - length * np.rint(away / length)) ** 2)

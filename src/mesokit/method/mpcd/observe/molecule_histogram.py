@@ -18,7 +18,7 @@ from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, mean_shape, stretched, undisturbed
 from mesokit.method.mpcd.expected.molecules import ends_at_rest, free_bond, modes_at_rest
 from mesokit.method.mpcd.expected.selection import KIND, group_of, molecule_of
-from mesokit.method.mpcd.expected.traps import held, trapped
+from mesokit.method.mpcd.expected.traps import held, squares_from_middle, trapped
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable, State, accumulator_of
@@ -170,13 +170,17 @@ class MoleculeHistogramAccumulator(BlockAccumulator):
         )
         name = f"R{AXES[self.axis]}" if self.component else name
         unit = "" if name == "cosine" else "a"
+        law = "ideal molecules"
+        if self.observable.of == "centre":
+            in_traps = trapped(self.case, self.observable.kind)
+            law = "Boltzmann in traps" if in_traps else "anywhere alike"
         return self.report(
             {name: (edges[1:] + edges[:-1]) / 2},
             (self.means.mean(combine), self.means.error(combine)),
             self.comparisons(known),
             units={"value": "1/a" if unit else "", name: unit},
             expected=None if expected is None else expected / (edges[1] - edges[0]),
-            theory=self.legend(),
+            theory=law,
             samples=self.means.blocks.count,
             extra={"edges": edges, "of": self.words()},
         )
@@ -184,9 +188,7 @@ class MoleculeHistogramAccumulator(BlockAccumulator):
     def spread(self, share: Array) -> Comparison:
         """Mean square distance from the expected middle, by the shorter way round the box."""
         length, middle = self.edges[-1], (self.edges[1:] + self.edges[:-1]) / 2
-        turns = np.angle(share @ np.exp(2j * np.pi * middle / length))
-        away = middle - turns * length / (2 * np.pi)
-        square = (away - length * np.rint(away / length)) ** 2
+        square = squares_from_middle(middle, share, length)
         what = f"mean square distance from the middle of the traps along {AXES[self.axis]}"
         expected, note = float(square @ share), self.means.caution()
         return Comparison(what, *self.means.total(square), expected, "a^2", note)
@@ -197,14 +199,6 @@ class MoleculeHistogramAccumulator(BlockAccumulator):
             return f"end-to-end vector along {axis}"
         against = {"orientation": f" against {axis}", "centre": f" along {axis}"}
         return words + against.get(self.observable.of, "")
-
-    def legend(self) -> str:
-        """What the theory is called in a figure."""
-        if self.observable.of != "centre":
-            return "ideal molecules"
-        return (
-            "Boltzmann in traps" if trapped(self.case, self.observable.kind) else "anywhere alike"
-        )
 
     def coarse(self) -> tuple[int, int, int]:
         """First and last fine edge of the result, and fine bins in each of its bins."""

@@ -125,7 +125,11 @@ class NormalModesAccumulator(BlockAccumulator):
                 value, error = d * float(square.value[0]), d * float(square.error[0])
                 least, short = self.short_run(correlator, 1)
                 error, note_of_square = max(error, value * least), joined(SQUARE, short)
-                known = d * self.mean_square(spring.k * self.eigenvalues[p]) if spring else np.nan
+                known = np.nan
+                if spring:  # equipartition, and what sub-steps of velocity Verlet add
+                    stiffness = spring.k * self.eigenvalues[p]
+                    swing = theory.verlet_swing(stiffness, *substep_of(self.case, kind))
+                    known = d * (self.case.fluid.kT / stiffness * swing)
                 yield Comparison(
                     f"mean square of mode {p + 1}", value, error, known, "a^2", note_of_square
                 )
@@ -145,11 +149,6 @@ class NormalModesAccumulator(BlockAccumulator):
             return 0.0, ""
         seen = len(self.beads) * self.case.box.dimension * (more + run)
         return (2 / seen) ** 0.5, of_relaxations(run / runs, runs)
-
-    def mean_square(self, stiffness: float) -> float:
-        """Of a mode along one axis: equipartition, and what sub-steps of velocity Verlet add."""
-        swing = theory.verlet_swing(stiffness, *substep_of(self.case, self.observable.kind))
-        return self.case.fluid.kT / stiffness * swing
 
     def relaxation_time(self, correlator: MultipleTau) -> tuple[float, float] | None:
         """From an exponential through the correlation, as far as it is above noise; its error."""

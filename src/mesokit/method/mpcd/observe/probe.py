@@ -84,21 +84,7 @@ class Probe(Observable):
             0 < side <= length for side, length in zip(self.size, case.box.size, strict=True)
         ):
             raise CaseError(f"size = {show(self.size)}: expected lengths that fit the box")
-        self._require_between_plates(case)
-        if self.component is not None:
-            case.box.index(self.component, "component")
-        if (self.speed is None) != (self.length is None):
-            lone, other = ("speed", "length") if self.length is None else ("length", "speed")
-            raise CaseError(f"{lone}: no effect without {other}; give both or neither")
-        if case.walls and solids_of(case).distance(self.place(case))[0] <= 0:
-            raise CaseError(f"centre = {show(self.place(case))}: lies in a solid")
-
-    def warnings(self, case: Case) -> Iterator[str]:
-        yield from setting.across_the_flow(case, self.component)
-
-    def _require_between_plates(self, case: Case) -> None:
-        """Raise CaseError for a small box that reaches over a plate."""
-        place, sides = self.place(case), self.size or (2.0,) * case.box.dimension
+        place, sides = self.place(case), self.size or (2.0,) * d
         for axis in setting.closed_axes(case):
             half = 0.5 * sides[axis] - 1e-9
             if not half <= place[axis] <= case.box.size[axis] - half:
@@ -106,6 +92,16 @@ class Probe(Observable):
                     f"centre = {show(place)}: with sides {show(sides)} it reaches over a plate "
                     f"along {AXES[axis]}"
                 )
+        if self.component is not None:
+            case.box.index(self.component, "component")
+        if (self.speed is None) != (self.length is None):
+            lone, other = ("speed", "length") if self.length is None else ("length", "speed")
+            raise CaseError(f"{lone}: no effect without {other}; give both or neither")
+        if case.walls and solids_of(case).distance(place)[0] <= 0:
+            raise CaseError(f"centre = {show(place)}: lies in a solid")
+
+    def warnings(self, case: Case) -> Iterator[str]:
+        yield from setting.across_the_flow(case, self.component)
 
     def place(self, case: Case) -> tuple[float, ...]:
         """The middle of the small box in this case."""

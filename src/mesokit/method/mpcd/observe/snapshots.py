@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
 from mesokit.case.case import Case
@@ -89,6 +88,9 @@ class SnapshotsAccumulator(BlockAccumulator):
         first, second = self.observable.axes
         names = [first, second, f"v_{first}", f"v_{second}"]
         x = {"step": self.times[:, 0].astype(np.int64), "particle": self.ids}
+        # the place of each particle's kind in fluid.species; 0 of a fluid of one kind
+        ends = np.cumsum([kind.number for kind in groups(self.case)[0].kinds])
+        species = np.searchsorted(ends, self.ids, side="right")
         return self.report(
             x | {"component": np.array(names)},
             self.seen.copy(),
@@ -96,15 +98,10 @@ class SnapshotsAccumulator(BlockAccumulator):
             samples=self.looks,
             extra={
                 "time": self.times[:, 1].copy(),
-                "species": self._species(),
+                "species": species.astype(np.int64),
                 "size": np.array([self.case.box.size[k] for k in self.columns], float),
             },
         )
-
-    def _species(self) -> NDArray[np.int64]:
-        """The place of each particle's kind in fluid.species; 0 of a fluid of one kind."""
-        counts = [kind.number for kind in groups(self.case)[0].kinds]
-        return np.searchsorted(np.cumsum(counts), self.ids, side="right").astype(np.int64)
 
     def _comparisons(self) -> Iterator[Comparison]:
         """Of particles that fly freely nothing but the place changes, and that evenly."""

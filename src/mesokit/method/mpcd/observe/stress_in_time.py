@@ -195,7 +195,10 @@ class StressInTimeAccumulator(BlockAccumulator):
         error = np.full(shape, np.nan)
         if many:
             known = flat.error.reshape(shape) * student(len(flat.weights))
-            error = np.maximum(known, self.scatter(flat))
+            # at least what springs at rest fluctuate in single windows
+            single, number = float(self.fluctuation(np.zeros(()))), flat.weights.sum()
+            least = [(SQUARES[name] * single / number) ** 0.5 for name in self.components]
+            error = np.maximum(known, least)
         return self.report(
             {"time": edges.mean(axis=1), "component": self.components},
             (flat.value.reshape(shape), error),
@@ -239,12 +242,6 @@ class StressInTimeAccumulator(BlockAccumulator):
             start=np.zeros(np.shape(lag)),
         )
 
-    def scatter(self, flat: Estimate) -> Array:
-        """Least errors (components,) of single windows by how much springs at rest fluctuate."""
-        single = float(self.fluctuation(np.zeros(())))
-        repetitions = flat.weights.sum()
-        return np.array([(SQUARES[name] * single / repetitions) ** 0.5 for name in self.components])
-
     def of_factor(self, rows: NDArray[np.int64], flat: Estimate, weight: Array, name: str) -> float:
         """Least error of a sum of windows (rows,), of one component: few repetitions may agree by
         chance."""
@@ -261,7 +258,6 @@ class StressInTimeAccumulator(BlockAccumulator):
     ) -> Iterator[Comparison]:
         if expected is None:
             return
-        molecules = self.case.fluid.molecule is not None
         for k, name in enumerate(self.components):
             weight = np.zeros(expected.shape)
             square = (expected[:, k] ** 2).sum()
@@ -271,12 +267,11 @@ class StressInTimeAccumulator(BlockAccumulator):
             value, error = flat.total(weight.ravel())
             error *= student(len(flat.weights))
             error = max(error, self.of_factor(rows, flat, weight[:, k], name))
-            note = setting.chaos_is_off(self.case, 1.0, error)
-            if molecules:
-                note = shear_note(self.case)
             if name == FIRST:
-                note = (
-                    "approximate: of uniform shear, which takes "
-                    f"{spreading_time(self.case):.2g} tau to spread from the images"
-                )
+                time = f"{spreading_time(self.case):.2g} tau to spread from the images"
+                note = f"approximate: of uniform shear, which takes {time}"
+            elif self.case.fluid.molecule is not None:
+                note = shear_note(self.case)
+            else:
+                note = setting.chaos_is_off(self.case, 1.0, error)
             yield Comparison(f"{name} over theory", value, error, 1.0, "", note)

@@ -230,7 +230,11 @@ def wave_shells(size: Sequence[float], largest: float, shells: int, most: int) -
     longest = [int(largest * length / (2 * math.pi)) for length in size]
     axes = [np.arange(0 if k == 0 else -n, n + 1) for k, n in enumerate(longest)]
     whole = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(size))
-    whole = whole[_first_half(whole)]
+    chosen, zero = np.zeros(len(whole), bool), np.ones(len(whole), bool)
+    for along in whole.T:  # those whose first component that is not 0 is above 0
+        chosen |= zero & (along > 0)
+        zero &= along == 0
+    whole = whole[chosen]
     vectors = 2 * np.pi * whole / np.array(size, float)
     length = np.sqrt((vectors**2).sum(axis=1))
     place = np.ceil(length / largest * shells - 1e-9).astype(int) - 1
@@ -249,15 +253,6 @@ def wave_sums(r: Array, waves: Array) -> NDArray[np.complex128]:
         found.real[here] = np.cos(phase).sum(axis=1)  # in half the time of a complex exponential
         found.imag[here] = -np.sin(phase).sum(axis=1)
     return found
-
-
-def _first_half(whole: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Those whose first component that is not 0 is above 0."""
-    chosen, zero = np.zeros(len(whole), bool), np.ones(len(whole), bool)
-    for along in whole.T:
-        chosen |= zero & (along > 0)
-        zero &= along == 0
-    return chosen
 
 
 def scatter_of_waves(each: Array, lengths: Array, members: NDArray[np.int64]) -> Array:
@@ -289,15 +284,11 @@ def scatter_of_waves(each: Array, lengths: Array, members: NDArray[np.int64]) ->
             degree = min(CURVE, known - 1)
             freedom = runs * (near.stop - near.start) - degree - 1
             if freedom >= FEWEST:
-                away = _off_the_curve(each[:, near], lengths[near], degree)
+                q = lengths[near]
+                powers = np.vander((q - q.mean()) / q.mean(), degree + 1)
+                trend = np.linalg.lstsq(powers, each[:, near].mean(axis=0), rcond=None)[0]
+                away = each[:, near] - powers @ trend
                 variance = (away**2).sum() / freedom
                 found[place] = np.sqrt(variance / (members[place] * runs))
                 break
     return found
-
-
-def _off_the_curve(each: Array, lengths: Array, degree: int) -> Array:
-    """What is left (runs, waves) when the best polynomial is taken away."""
-    powers = np.vander((lengths - lengths.mean()) / lengths.mean(), degree + 1)
-    mean = each.mean(axis=0)
-    return np.asarray(each - powers @ np.linalg.lstsq(powers, mean, rcond=None)[0])

@@ -94,9 +94,6 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         frame = [out, tangent] + ([np.cross(out, tangent)] if d == 3 else [])
         return np.stack([(direction * v).sum(axis=1) for direction in frame])
 
-    def labels(self, of: str) -> tuple[str, str]:
-        return LABELS.get(of, (of, self.case.box.density_unit))
-
     def result(self) -> Result:
         of, expected = self.observable.of, self.expected()
         found: list[Comparison] = []
@@ -105,12 +102,12 @@ class SurfaceProfileAccumulator(ShellAccumulator):
             "temperature": self.temperature,
             "speed": lambda: self.velocity(1),
         }[of]()
+        label, unit = LABELS.get(of, (of, self.case.box.density_unit))
         note = self.note()
         if expected is not None and self.blocks.count and np.isfinite(value.value).all():
-            found = [self.next_to_surface(value, expected, note)]
+            found = [self.next_to_surface(value, expected, unit, note)]
             if not note:
                 found += self.chi_square(value, expected, "against theory")
-        label, unit = self.labels(of)
         return self.report(
             {"distance": self.centres},
             value,
@@ -142,7 +139,7 @@ class SurfaceProfileAccumulator(ShellAccumulator):
             return np.full(self.bins, fluid.kT) if setting.at_kT(self.case) else None
         return None if driven else np.zeros(self.bins)
 
-    def next_to_surface(self, value: Estimate, expected: Array, note: str) -> Comparison:
+    def next_to_surface(self, value: Estimate, expected: Array, unit: str, note: str) -> Comparison:
         """The mean of the cell next to the surface: over its volume, or its particles."""
         first = self.edges[1:] <= 1.0 + 1e-9
         if not first.any():
@@ -154,7 +151,7 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         if of == "temperature":
             error = setting.with_start(self.case, error, known, self.blocks.series)
         what = f"{of} in the cell at the surface"
-        return Comparison(what, mean, error, known, self.labels(of)[1], note)
+        return Comparison(what, mean, error, known, unit, note)
 
     @functools.cached_property
     def volumes(self) -> Array:

@@ -100,7 +100,9 @@ class Standing:
             raise CaseError(f"solid: the middle of {name} is not in it, or it has no rear")
         start = self.middle.copy()
         start[axis] += self.sign * self.rear
-        self.room = _fluid_until(solids, start, axis, self.sign)
+        away, clear = _line(solids, start, axis, self.sign)
+        stops = np.flatnonzero(clear[1:] <= 0)
+        self.room = float(away[stops[0] + 1] if len(stops) else away[-1])
         if not self.room > 0:
             raise CaseError(f"solid: no fluid behind {solids.names[number]}")
 
@@ -125,13 +127,6 @@ def _solid_until(solids: Solids, start: Array, axis: int, sign: float) -> float:
     if not len(free):
         return np.inf
     return float(away[free[0]] - clear[free[0]])  # the last step went beyond the surface
-
-
-def _fluid_until(solids: Solids, start: Array, axis: int, sign: float) -> float:
-    """How far the fluid reaches behind a surface."""
-    away, clear = _line(solids, start, axis, sign)
-    stops = np.flatnonzero(clear[1:] <= 0)
-    return float(away[stops[0] + 1] if len(stops) else away[-1])
 
 
 @accumulator_of(Wake)

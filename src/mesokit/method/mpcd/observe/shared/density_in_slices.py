@@ -12,7 +12,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import springs_of
 from mesokit.method.mpcd.expected.selection import Group, group_of, kind_of
-from mesokit.method.mpcd.expected.traps import held, trapped
+from mesokit.method.mpcd.expected.traps import held, squares_from_middle, trapped
 from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate
@@ -96,9 +96,7 @@ class DensityInSlices:
     def spread(self, profile: ProfileAccumulator, density: Estimate, expected: Array) -> Comparison:
         """Mean square distance from the expected middle, by the shorter way round the box."""
         length, share = profile.edges[-1], expected / expected.sum()
-        turns = np.angle(share @ np.exp(2j * np.pi * profile.centres / length))
-        away = profile.centres - turns * length / (2 * np.pi)
-        square = (away - length * np.rint(away / length)) ** 2 / expected.sum()
+        square = squares_from_middle(profile.centres, share, length) / expected.sum()
         what = f"mean square distance from the middle of the traps along {profile.observable.axis}"
         return Comparison(what, *density.total(square), square @ expected, "a^2")
 

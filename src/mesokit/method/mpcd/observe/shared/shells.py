@@ -44,13 +44,9 @@ class ShellAccumulator(BlockAccumulator):
         """Velocities (directions, n), the first d of them along directions at right angles."""
 
     def observe(self, fluid: RunningFluid) -> None:
-        self.blocks.add(fluid.sums_of_particles(self.terms, self.bins, self.units))
-
-    @property
-    def units(self) -> list[float]:
-        fluid, directions = self.case.fluid, self.blocks.shape[0] - MOMENTUM
-        momentum = math.sqrt(fluid.mass * fluid.kT)
-        return [1.0, fluid.mass, fluid.kT, *[momentum] * directions]
+        mass, kT = self.case.fluid.mass, self.case.fluid.kT
+        units = [1.0, mass, kT, *[math.sqrt(mass * kT)] * self.dimension]  # about the size of each
+        self.blocks.add(fluid.sums_of_particles(self.terms, self.bins, units))
 
     def terms(self, some: Some) -> Terms:
         """Shells of those particles that are in one, and what each adds there."""
