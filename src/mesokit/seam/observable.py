@@ -1,4 +1,4 @@
-"""What an observable is, and how it keeps its numbers."""
+"""Observables, and the accumulators that keep their numbers."""
 
 from abc import ABC, abstractmethod, update_abstractmethods
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -25,7 +25,7 @@ class Accumulator(Protocol):
         """Take one sample."""
 
     def state(self) -> State:
-        """All it has to remember, as arrays."""
+        """Its memory as arrays."""
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
@@ -34,7 +34,7 @@ class Accumulator(Protocol):
         """Take in the samples of an independent run of the same case: only to read from then on."""
 
     def result(self) -> Result:
-        """What the samples so far say."""
+        """The result of the samples so far."""
 
 
 @family(
@@ -79,7 +79,7 @@ class Observable(ABC):  # noqa: B024  # `accumulator` is abstract
         """Raise CaseError if it cannot be measured in this case."""
 
     def warnings(self, case: Case) -> Iterator[str]:
-        """What one should know before it is measured in this case, key first."""
+        """Warnings about measuring it in this case, key first."""
         yield from ()
 
     def accumulator(self, case: Case) -> Accumulator:
@@ -132,7 +132,7 @@ def unpack(state: Mapping[str, NDArray[Any]], name: str) -> State:
 
 
 class BlockAccumulator(ABC):
-    """An accumulator that remembers what `memory` names: blocks, unless a subclass says more.
+    """An accumulator whose memory is the parts that `memory` names: blocks unless given.
 
     Each is a part that has a state of its own (`Blocks`, `TimeSeries`, ...), a number or an array,
     or a dictionary of such parts by name. A part that is None is left out. Parts that can pool
@@ -214,7 +214,7 @@ class BlockAccumulator(ABC):
         return found
 
     def state(self) -> State:
-        """All it has to remember."""
+        """Its memory as arrays."""
         return pack(**{name: part for _, name, part in self._parts(self.memory)})
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:

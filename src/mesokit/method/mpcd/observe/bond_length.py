@@ -1,4 +1,4 @@
-"""How long the bonds of molecules are, and which way they point."""
+"""Length and direction of the bonds of molecules."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal

@@ -1,4 +1,4 @@
-"""How many particles cells hold: a histogram beside Poisson."""
+"""Number of particles in cells: a histogram beside Poisson's."""
 
 import math
 from collections.abc import Iterator

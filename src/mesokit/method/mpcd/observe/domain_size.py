@@ -1,4 +1,4 @@
-"""How large the domains of two species are, in time."""
+"""Size of the domains of two species in time."""
 
 import math
 from collections.abc import Iterator

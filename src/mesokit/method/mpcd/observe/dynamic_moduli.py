@@ -147,7 +147,7 @@ class DynamicModuliAccumulator(BlockAccumulator):
             yield Comparison(what, eta, spread, known, "a^2/tau", notes[1])
 
     def note(self, k: int) -> str:
-        """Why theory is off for one of both moduli by more than its error bar, "" if it is not."""
+        """Reason for which theory of a modulus is off by more than its error, "" if it is not."""
         if self.case.fluid.molecule is not None:
             return rouse_note(self.case)
         if setting.caveat(self.case):

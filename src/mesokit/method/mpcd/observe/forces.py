@@ -174,7 +174,7 @@ class ForcesAccumulator(BlockAccumulator):
         return total
 
     def expected(self) -> Array:
-        """What a balance or a theory says of each solid, nan elsewhere."""
+        """Force and torque on each solid by a balance or a theory, nan elsewhere."""
         case, d = self.case, self.dimension
         expected = np.full(self.shape, np.nan)
         wall, gap = slit_of(case), recognise.gap(case)
@@ -238,7 +238,7 @@ class ForcesAccumulator(BlockAccumulator):
     def shares(
         self, mean: Estimate, places: NDArray[np.intp], axis: int, expected: Array, short: str
     ) -> Iterator[Comparison]:
-        """What part of the force on the fluid each solid takes; `short`: the caveat of the run."""
+        """Part of the force on the fluid that each solid takes; `short`: the caveat of the run."""
         total = self.total()[axis]
         note = joined("of the force on the fluid", short)
         for body, place in enumerate(places):
@@ -249,7 +249,7 @@ class ForcesAccumulator(BlockAccumulator):
             yield Comparison(what, *mean.total(gradient), known, "%", note)
 
     def coefficient(self) -> float:
-        """What turns a force along the flow into its coefficient, nan without a length."""
+        """Coefficient over force along the flow, nan without a length."""
         if self.observable.length is None or not self.blocks.count:
             return np.nan
         if self.observable.speed is not None:
@@ -258,7 +258,7 @@ class ForcesAccumulator(BlockAccumulator):
         return self.scale(speed) if abs(speed) > SURE * spread else np.nan
 
     def note_on_torque(self, body: int) -> str:
-        """How well cells resolve one of two round surfaces: the inner one takes too little.
+        """Note on how well cells resolve a round surface: the inner one takes too little.
 
         Measured: 31 % less at a radius of 1, 15 % at 2; the outer one within 3 %.
         """

@@ -1,4 +1,4 @@
-"""How a number of molecules is distributed: size, ends, orientation, place of the centre."""
+"""Distribution of a number of molecules: size, ends, orientation, place of the centre."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ class MoleculeHistogramAccumulator(BlockAccumulator):
         self.means.add(each)
 
     def numbers(self, fluid: RunningFluid) -> Array:
-        """What is counted, (molecules,)."""
+        """The number of each molecule that is counted, (molecules,)."""
         of, ids = self.observable.of, self.beads.ravel()
         shape = (*self.beads.shape, self.dimension)
         if of == "centre":
@@ -212,7 +212,7 @@ class MoleculeHistogramAccumulator(BlockAccumulator):
         return int(first), int(last), many
 
     def cdf(self, edges: Array) -> Array | None:
-        """What theory expects below each edge; None where there is none."""
+        """Expected share below each edge; None without a theory."""
         of, case, kind = self.observable.of, self.case, self.observable.kind
         molecule, d = self.group.molecule, self.dimension
         assert molecule is not None

@@ -1,4 +1,4 @@
-"""How large molecules are: gyration tensor and, of chains, the end-to-end vector."""
+"""Size of molecules: gyration tensor and, of chains, the end-to-end vector."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal

@@ -142,7 +142,7 @@ class MoleculeTracksAccumulator(BlockAccumulator):
             yield Comparison(what, mean[k], error[k], known, unit, note)
 
     def note(self) -> str:
-        """How many molecules are behind an error bar, where they are few."""
+        """Number of molecules behind an error bar, where they are few."""
         few = self.number < self.group.number
         words = f"of {self.number} of {self.group.number} molecules" if few else ""
         return joined(words, self.means.caution())

@@ -252,7 +252,7 @@ def amplitudes(series: Sequence[Series], frequency: float) -> Blocks:
 def swings(
     blocks: Blocks, swing: Swing, along: str, expected: complex | None
 ) -> Iterator[Comparison]:
-    """Amplitude, and lag behind the force, beside the complex amplitude that theory knows."""
+    """Amplitude, and lag behind the force, beside the complex amplitude of theory."""
     if not blocks.count:
         return
     mean = of_mean(blocks)

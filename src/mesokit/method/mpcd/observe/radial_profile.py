@@ -194,7 +194,7 @@ class RadialProfileAccumulator(ShellAccumulator):
         return ((self.edges[:-1] >= low - 1e-9) & (self.edges[1:] <= high + 1e-9)) * 1.0
 
     def short_run(self, rate: float) -> str:
-        """Where blocking cannot see the slowest eddies, which decay at this rate: a note."""
+        """Caveat of a run that is short against the decay of the slowest eddies, at this rate."""
         runs, step = self.blocks.series, self.case.fluid.timestep
         time = self.blocks.count / runs * self.observable.every * step
         if not 0 < time * rate < ENOUGH_FOR_CURVATURE:

@@ -1,4 +1,4 @@
-"""How long molecules stay in a region, or near a solid."""
+"""Times that molecules stay in a region, or near a solid."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal

@@ -1,4 +1,4 @@
-"""Where particles are and how fast, at chosen steps."""
+"""Positions and velocities of particles at chosen steps."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal
@@ -58,7 +58,7 @@ class Snapshots(Observable):
 
 @accumulator_of(Snapshots)
 class SnapshotsAccumulator(BlockAccumulator):
-    """What was seen so far, (steps, particles, 4): two coordinates and two velocities.
+    """Samples so far, (steps, particles, 4): two coordinates and two velocities.
 
     Of pooled runs those of the first are kept: places of two runs have no mean.
     """

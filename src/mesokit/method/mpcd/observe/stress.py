@@ -79,7 +79,7 @@ class StressAccumulator(TensorAccumulator):
         return samples * self.observable.every * self.case.fluid.timestep
 
     def short_run(self) -> str:
-        """Where blocking cannot see how slowly bonds change: a note."""
+        """Caveat of a run that is short against the relaxation time of the bonds."""
         slowest = max((float(times.mode[0]) for _, times in self.springs), default=0.0)
         if not 0 < self.length() < ENOUGH * slowest:
             return ""
@@ -233,7 +233,7 @@ class StressAccumulator(TensorAccumulator):
         return joined(note, self.short_run() if self.bonds_in(part) else "")
 
     def bond_part(self, scale: float) -> Comparison:
-        """What bonds add to the viscosity; `scale` is the mass density times the shear rate."""
+        """Part of the bonds in the viscosity; `scale` is the mass density times the shear rate."""
         value, error = self.blocks.mean()[2, 0, 1] / scale, self.errors()[2, 0, 1] / scale
         known, expected, note = bond_viscosity(self.case), np.nan, ""
         if known is not None:
@@ -244,7 +244,7 @@ class StressAccumulator(TensorAccumulator):
         return Comparison(what, value, abs(error), expected, "a^2/tau", note)
 
     def bonded(self) -> theory.ShearStress | None:
-        """What Rouse's theory expects of a sheared fluid of molecules."""
+        """Stress of a sheared fluid of molecules by Rouse's theory."""
         return None if self.case.fluid.molecule is None else stress_in_shear(self.case)
 
     def normal_differences(self) -> Iterator[Comparison]:

@@ -114,7 +114,7 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         return int(quiet[0]) if len(quiet) else len(time)
 
     def note(self, last: float, error: float) -> str:
-        """How far the integral goes, what that leaves out, and how good the theory is.
+        """End of the integral, what that leaves out, and how good the theory is.
 
         `error`: relative to theory; a large one says nothing about the theory.
         """

@@ -215,7 +215,7 @@ class StressInTimeAccumulator(BlockAccumulator):
         )
 
     def expected(self, rows: NDArray[np.int64]) -> Array | None:
-        """What theory says of these rows: of the average over the periods that were seen."""
+        """Stress of theory in these rows, averaged over the periods that were measured."""
         count = self.blocks.count // (1 + len(self.others)) if self.period else 1
         first = max(int(self.first[0]), 0)
         if not len(rows):

@@ -175,7 +175,7 @@ class StructureFactorAccumulator(BlockAccumulator):
         )
 
     def expected(self) -> Array | None:
-        """That of one molecule on the average, where molecules do not know of one another."""
+        """That of one molecule on average, where molecules are independent."""
         if not independent(self.case, self.of, self.groups):
             return None
         lengths, place = np.unique(np.round(self.lengths, 12), return_inverse=True)

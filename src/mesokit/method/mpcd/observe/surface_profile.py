@@ -121,7 +121,7 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         )
 
     def note(self) -> str:
-        """Why theory is known to be off by more than an error bar, "" where it is not."""
+        """Reason for which theory is off by more than an error bar, "" where it is not."""
         of, driven = self.observable.of, setting.driven(self.case)
         if of == "temperature":
             if driven:

@@ -1,4 +1,4 @@
-"""How long molecules take from one plane across the flow to the next."""
+"""Times that molecules take from one plane across the flow to the next."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal
@@ -59,7 +59,7 @@ class TransitTime(Observable):
 
 @accumulator_of(TransitTime)
 class TransitTimeAccumulator(EventAccumulator):
-    """Where each molecule was, the next plane that it has not been at, and when it was at the last.
+    """Place of each molecule, the next plane that it has not reached, and the time at the last.
 
     Memory: `time`, `place`, `plane` (number of the next), `since` (nan before the first plane).
     """

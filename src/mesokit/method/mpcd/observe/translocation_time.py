@@ -1,4 +1,4 @@
-"""How long chains take through a plane: from the first bead to the last."""
+"""Times that chains take through a plane, from the first bead to the last."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal
@@ -56,7 +56,7 @@ class TranslocationTime(Observable):
 
 @accumulator_of(TranslocationTime)
 class TranslocationTimeAccumulator(EventAccumulator):
-    """Where the first and the last bead of each molecule are, and since when it is in a plane.
+    """Places of the first and last bead of each molecule, and since when it is in a plane.
 
     Memory: `time`, `front`, `back`, `plane` (the next to be passed by the last bead), `behind`
     (whether all beads are behind it), `since` (when the first bead passed it; nan if unknown),

@@ -78,7 +78,7 @@ class Wake(Observable):
 
 
 class Standing:
-    """Where a body stands in the flow: `axis` and `sign` of the flow, the axes `across` that bound
+    """Place of a body in the flow: `axis` and `sign` of the flow, the axes `across` that bound
     the strip, its `middle`, how far its `rear` is from there, its `size`, and the `room` behind."""
 
     def __init__(self, observable: Wake, case: Case) -> None:
@@ -119,7 +119,7 @@ def _line(solids: Solids, start: Array, axis: int, sign: float) -> tuple[Array, 
 
 
 def _solid_until(solids: Solids, start: Array, axis: int, sign: float) -> float:
-    """How far the solid reaches; 0 where there is none, infinite where it goes on for ever."""
+    """Distance up to which there is solid; 0 where there is none, infinite where it never ends."""
     away, clear = _line(solids, start, axis, sign)
     if solids.distance(start)[0] > 0:
         return 0.0
@@ -207,7 +207,7 @@ class WakeAccumulator(BlockAccumulator):
             yield Comparison("L_r/D", value, error, expected, "", note)
 
     def crossing(self, velocity: Estimate) -> tuple[float, float] | None:
-        """Where the velocity passes zero, and its error; None if the fluid does not flow back.
+        """Place where the velocity passes zero, and its error; None if nothing flows back.
 
         The flux behind the body falls to its minimum there, however noisy the velocity; it has to
         be negative by more than SURE standard errors. The line goes through the bins within a cell,

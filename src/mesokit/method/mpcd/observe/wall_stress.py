@@ -35,7 +35,7 @@ def require_counted(case: Case, quantity: str) -> None:
 
 
 class SinceLast:
-    """What surfaces (rows, columns) took between one sample and the next."""
+    """Momentum that surfaces (rows, columns) take between one sample and the next."""
 
     def __init__(self, rows: int, columns: int) -> None:
         self.shape, self.steps = (rows, columns), 0
@@ -70,7 +70,7 @@ class WallStress(Observable):
     value_label = "force per area on the plates"
 
     def check(self, case: Case) -> None:
-        """Raise CaseError without walls, or for a second one: it sees what the first left."""
+        """Raise CaseError without the two plates of a slit."""
         if slit_of(case) is None:
             rules = {
                 f"wall[#{i + 1}].{side}.rule = 'diffuse'"

@@ -101,7 +101,7 @@ class DensityInSlices:
         return Comparison(what, *density.total(square), square @ expected, "a^2")
 
     def legend(self, profile: ProfileAccumulator) -> str:
-        """What the theory is called in a figure."""
+        """Name of the theory in a figure."""
         if self.trapped:
             return "Boltzmann in traps"
         walls = self.group.molecule is not None and not profile.periodic

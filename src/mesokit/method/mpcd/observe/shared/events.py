@@ -202,7 +202,7 @@ def ratio(sums: Array) -> tuple[float, float]:
 class EventAccumulator(BlockAccumulator):
     """Followed molecules, their numbers from sample to sample, and the events that they had.
 
-    `now` holds an array for each number that must be remembered; none before the first sample.
+    `now` holds an array for each number that the next sample needs; none before the first one.
     """
 
     memory: ClassVar[tuple[str, ...]] = ("durations",)
@@ -299,7 +299,7 @@ def require_still(case: Case, axis: int, key: str) -> None:
 
 
 def crossing(before: Array, after: Array, place: Array, times: tuple[float, float]) -> Array:
-    """When straight ways between two times are at a place."""
+    """Times at which straight paths between two times cross a place."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (place - before) / (after - before)
     return np.asarray(times[0] + share * (times[1] - times[0]))

@@ -101,12 +101,12 @@ class Seen:
         return coefficients.viscosity if coefficients else np.nan
 
     def viscosity_note(self, error: float) -> str:
-        """Why that of the theory is not this fluid's, or is off by more than the error bar."""
+        """Reason for which the theory is off by more than the error bar."""
         caveat = setting.caveat(self.case)
         return caveat or setting.chaos_is_off(self.case, self.expected_viscosity(), error)
 
     def short_run(self, viscosity: float) -> str:
-        """Where blocking cannot see the slowest eddies, which live H^2/(pi^2 nu): a note."""
+        """Caveat of a run that is short against the life H^2/(pi^2 nu) of the slowest eddies."""
         blocks, step = self.profile.blocks, self.case.fluid.timestep
         time = blocks.count / blocks.series * self.profile.observable.every * step
         times = time * np.pi**2 * viscosity / self.edges[-1] ** 2

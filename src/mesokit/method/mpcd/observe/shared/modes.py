@@ -1,4 +1,4 @@
-"""What transverse and longitudinal modes share: wave vectors, polarisations and correlators."""
+"""Base of transverse and longitudinal modes: wave vectors, polarisations and correlators."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What profiles in shells share: particles are sorted by a distance, not by a coordinate."""
+"""Base of profiles in shells: particles are sorted by a distance, not by a coordinate."""
 
 import math
 from abc import abstractmethod
@@ -33,7 +33,7 @@ class ShellAccumulator(BlockAccumulator):
 
     @abstractmethod
     def locate(self, r: Array) -> tuple[Array, Array]:
-        """The distance (n,) of each particle, and what `along` has to know of its place (n, d).
+        """Distance (n,) of each particle, and a vector (n, d) of its place that `along` needs.
 
         By its own row alone, as what `along` does: particles come in pieces, which are others for
         another number of processes.

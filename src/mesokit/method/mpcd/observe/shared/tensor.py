@@ -118,7 +118,7 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         return np.ones(len(self.times.mode))
 
     def relaxations(self) -> float:
-        """How many relaxation times of the slowest mode a run has, nan where they are not known.
+        """Length of a run in relaxation times of the slowest mode, nan where they are not known.
 
         Those of molecules at rest: a flow makes them shorter.
         """
@@ -128,7 +128,7 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         return float(length / self.times.mode[0])
 
     def short_run(self) -> str:
-        """Where blocking cannot see how slowly molecules change: a note."""
+        """Caveat of a run that is short against the relaxation time of the molecules."""
         times = self.relaxations()
         if np.isnan(times):
             return self.own.caution()
