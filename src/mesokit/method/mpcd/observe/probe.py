@@ -20,7 +20,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.field.protocol import Swing
-from mesokit.method.mpcd.observe.shared.shells import nearest, periods
+from mesokit.method.mpcd.observe.shared.shells import nearest, periodic_lengths
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
@@ -126,7 +126,7 @@ class ProbeAccumulator(BlockAccumulator):
         self.dimension = d = case.box.dimension
         self.centre = np.array(observable.place(case))
         self.half = np.array(observable.size or (2.0,) * d) / 2
-        self.lengths = periods(case)
+        self.lengths = periodic_lengths(case)
         self.component = observable.seen(case)
         self.blocks, self.series = Blocks((d,)), TimeSeries(d, ROWS)
         self.others: list[TimeSeries] = []  # of runs pooled with it

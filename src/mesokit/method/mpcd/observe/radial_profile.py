@@ -18,7 +18,7 @@ from mesokit.method.mpcd.observe.shared.shells import (
     Array,
     ShellAccumulator,
     nearest,
-    periods,
+    periodic_lengths,
     shell_volumes,
 )
 from mesokit.observe.shared.short_run import ENOUGH_FOR_CURVATURE, of_relaxations
@@ -82,7 +82,7 @@ class RadialProfileAccumulator(ShellAccumulator):
             self.centre, np.array(self.flow.centre)[self.plane]
         )
         lengths = np.array(case.box.size, float)[self.plane]
-        self.lengths = periods(case)[self.plane]
+        self.lengths = periodic_lengths(case)[self.plane]
         inner, outer = self.flow.radii if self.known else (0.0, np.inf)
         inner, outer = observable.radii or (inner, min(outer, lengths.min() / 2))
         self.prepare_shells(inner, outer)

@@ -16,7 +16,7 @@ from mesokit.geometry.shape.cylinder import Cylinder
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import Solids, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.shells import nearest, periods
+from mesokit.method.mpcd.observe.shared.shells import nearest, periodic_lengths
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, fit, of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
@@ -142,7 +142,7 @@ class WakeAccumulator(BlockAccumulator):
         bins = max(round(reach * observable.bins_per_cell), 1)
         self.edges = np.linspace(0.0, reach, bins + 1)
         self.centres = (self.edges[1:] + self.edges[:-1]) / 2
-        self.lengths = periods(case)
+        self.lengths = periodic_lengths(case)
         self.blocks, self.whole = Blocks((2, bins)), Blocks()
 
     def observe(self, fluid: RunningFluid) -> None:

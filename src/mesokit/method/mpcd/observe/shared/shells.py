@@ -97,7 +97,7 @@ class ShellAccumulator(BlockAccumulator):
         return mode_chi_square(scaled, expected * root, periodic=False, note=note)
 
 
-def periods(case: Case) -> Array:
+def periodic_lengths(case: Case) -> Array:
     """Length of the box along each axis, infinite where walls close it."""
     closed = np.isin(range(case.box.dimension), list(setting.closed_axes(case)))
     return np.where(closed, np.inf, np.array(case.box.size, float))
