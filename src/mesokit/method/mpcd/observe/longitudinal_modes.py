@@ -49,21 +49,23 @@ class LongitudinalModesAccumulator(ModesAccumulator):
         return self.modes(self.fits(), "damped sound")
 
     def law(self, time: Array) -> Array | None:
+        coefficients = setting.transport(self.case) if self.undisturbed() else None
+        if coefficients is None or coefficients.sound_attenuation is None:
+            return None
+        speed, attenuation = coefficients.sound_speed, coefficients.sound_attenuation
+        return np.stack([self.sound(time, k, speed, attenuation) for k in self.wavenumbers], axis=1)
+
+    @staticmethod
+    def sound(time: Array, k: float, speed: float, attenuation: float) -> Array:
         """exp(-at) (cos wt - (a/w) sin wt), a = Gamma k^2/2, w^2 = c^2 k^2 - a^2.
 
         Exact in linear isothermal hydrodynamics; with heat conduction the phase is another, of
         the same small order. Overdamped beyond k = 2 c/Gamma.
         """
-        coefficients = setting.transport(self.case) if self.undisturbed() else None
-        if coefficients is None or coefficients.sound_attenuation is None:
-            return None
-        curves = []
-        for k in self.wavenumbers:
-            damping = coefficients.sound_attenuation * k * k / 2
-            frequency = np.emath.sqrt((coefficients.sound_speed * k) ** 2 - damping**2)
-            wave = np.cos(frequency * time) - damping / frequency * np.sin(frequency * time)
-            curves.append(np.real(np.exp(-damping * time) * wave))
-        return np.stack(curves, axis=1)
+        damping = attenuation * k * k / 2
+        frequency = np.emath.sqrt((speed * k) ** 2 - damping**2)
+        wave = np.cos(frequency * time) - damping / frequency * np.sin(frequency * time)
+        return np.asarray(np.real(np.exp(-damping * time) * wave))
 
     def fits(self) -> Iterator[Comparison]:
         """Sound speed and attenuation for each of the smallest wave numbers."""
