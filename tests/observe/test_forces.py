@@ -28,7 +28,7 @@ from mesokit.case.run import Run
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.method.mpcd.observe.shared.tensor import kept
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.run.simulation import Simulation
 from tests.helpers.comparisons import by_name

@@ -173,7 +173,7 @@ def test_wall_stress_balances_the_force(make_case):
 def test_couette_drag_pulls_the_plates_against_their_motion(make_case):
     walls = [Plates(axis="y", upper=Surface(velocity=(0.8, 0)))]
     case = make_case((4, 8), walls=walls, thermostat=MaxwellBoltzmann())
-    expected = WallStress().accumulator(case).expected()
+    expected = balance(case)
     eta = setting.transport(case).dynamic_viscosity
     assert expected == pytest.approx(np.array([[eta * 0.1, -10], [-eta * 0.1, 10]]))
 
@@ -182,7 +182,7 @@ def test_weight_rests_on_the_lower_plate(make_case):
     case = make_case(
         (4, 8), walls=[Plates(axis="y")], force=Uniform((0, -0.05)), thermostat=MaxwellBoltzmann()
     )
-    lower, upper = WallStress().accumulator(case).expected()[:, 1]
+    lower, upper = balance(case)[:, 1]
     assert lower + upper == pytest.approx(-10 * 0.05 * 8)
     assert -lower / upper == pytest.approx(np.exp(0.05 * 8))
 

@@ -125,7 +125,7 @@ def test_theory_of_several_curves_says_which_it_is_of():
 @pytest.mark.parametrize("lasted", [[2.0], [3.0, 3.0]])
 def test_events_of_one_duration_are_one_bar(lasted):
     """Not one that is too thin to be seen, about a time that no axis can show."""
-    from mesokit.method.mpcd.observe.shared.durations import Durations
+    from mesokit.method.mpcd.observe.shared.events import Durations
 
     events = Durations()
     for time in range(64):

@@ -1,4 +1,4 @@
-"""What an observable is, and how it keeps its numbers."""
+"""Observables, and the accumulators that keep their numbers."""
 
 from abc import ABC, abstractmethod, update_abstractmethods
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, option
 from mesokit.case.registry import family
-from mesokit.seam.estimate import Estimate
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -26,7 +25,7 @@ class Accumulator(Protocol):
         """Take one sample."""
 
     def state(self) -> State:
-        """All it has to remember, as arrays."""
+        """Its memory as arrays."""
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
@@ -35,7 +34,7 @@ class Accumulator(Protocol):
         """Take in the samples of an independent run of the same case: only to read from then on."""
 
     def result(self) -> Result:
-        """What the samples so far say."""
+        """The result of the samples so far."""
 
 
 @family(
@@ -80,7 +79,7 @@ class Observable(ABC):  # noqa: B024  # `accumulator` is abstract
         """Raise CaseError if it cannot be measured in this case."""
 
     def warnings(self, case: Case) -> Iterator[str]:
-        """What one should know before it is measured in this case, key first."""
+        """Warnings about measuring it in this case, key first."""
         yield from ()
 
     def accumulator(self, case: Case) -> Accumulator:
@@ -133,22 +132,23 @@ def unpack(state: Mapping[str, NDArray[Any]], name: str) -> State:
 
 
 class BlockAccumulator(ABC):
-    """An accumulator that remembers what `memory` names: blocks, unless a subclass says more.
+    """An accumulator whose memory is the parts that `memory` names: blocks unless given.
 
-    Each is a part that has a state of its own (`Blocks`, `TimeSeries`, ...), a number or an array.
-    A part that is None is left out. Parts that can pool those of another run do so; numbers and
-    arrays stay those of this run, unless they are `added`. It is made of an observable and a case;
-    a subclass makes its parts in `prepare`.
+    Each is a part that has a state of its own (`Blocks`, `TimeSeries`, ...), a number or an array,
+    or a dictionary of such parts by name. A part that is None is left out. Parts that can pool
+    those of another run do so; numbers and arrays stay those of this run, unless they are `added`.
+    It is made of an observable and a case; a subclass makes its parts in `prepare`.
     """
 
     memory: ClassVar[tuple[str, ...]] = ("blocks",)
     added: ClassVar[tuple[str, ...]] = ()  # numbers, arrays and lists that pooling adds up
     observable: Any
     case: Case
+    name: str
     blocks: Blocks
 
     def __init__(self, observable: Any, case: Case) -> None:
-        self.observable, self.case = observable, case
+        self.observable, self.case, self.name = observable, case, observable.label
         self.prepare()
 
     def prepare(self) -> None:  # noqa: B027  # a subclass may have an __init__ instead
@@ -157,7 +157,7 @@ class BlockAccumulator(ABC):
     def report(
         self,
         x: Mapping[str, Any],
-        found: Estimate | Blocks | tuple[Array, Array] | Array,
+        found: Any,
         comparisons: Iterable[Comparison | None] = (),
         *,
         samples: int | None = None,
@@ -169,56 +169,70 @@ class BlockAccumulator(ABC):
         Parameters
         ----------
         x: coordinates of each axis, arrays or sequences.
-        found: an estimate, the means of blocks, values with errors, or values without (nan).
-        comparisons: only drawn up where there are samples; None is left out.
+        found: `Blocks`, whose mean it is; an `Estimate` or another with `value` and `error`; a list
+            of those, one a column; a pair of values and errors; values alone, without (nan).
+        comparisons: a list, or a generator, run only where there are samples; None is left out.
         samples: their number (that of `blocks` unless given).
         units: further units, that of "value" included.
         more: further fields of `Result`, such as `expected`, `theory`, `label`.
         """
         observable, count = self.observable, self.blocks.count if samples is None else samples
-        if isinstance(found, Estimate):
-            found = found.value, found.error
+        if isinstance(found, list):
+            value = np.stack([one.value for one in found], axis=1)
+            error = np.stack([one.error for one in found], axis=1)
         elif isinstance(found, Blocks):
-            found = found.mean(), found.error()
-        elif not isinstance(found, tuple):
-            found = found, np.full(np.shape(found), np.nan)
+            value, error = found.mean(), found.error()
+        elif hasattr(found, "value"):
+            value, error = found.value, found.error
+        elif isinstance(found, tuple):
+            value, error = found
+        else:
+            value, error = found, np.full(np.shape(found), np.nan)
+        given = isinstance(comparisons, list | tuple)
         known = {"label": observable.value_label, "drawing": observable.drawing}
         return Result(
             quantity=name_of(observable),
             name=observable.label,
             x={name: np.asarray(axis) for name, axis in x.items()},
-            value=found[0],
-            error=found[1],
+            value=value,
+            error=error,
             units={"value": ""} | observable.units | dict(units or {}),
-            comparisons=tuple(c for c in comparisons if c) if count else (),
+            comparisons=tuple(filter(None, comparisons)) if count or given else (),
             samples=count,
             **(known | more),
         )
 
+    def _parts(self, names: Iterable[str]) -> list[tuple[dict[str, Any], str, Any]]:
+        """The dictionary that holds a part, its name there, and the part."""
+        found = []
+        for name in names:
+            part = getattr(self, name)
+            if isinstance(part, dict):
+                found += [(part, key, one) for key, one in part.items()]
+            elif part is not None:
+                found.append((vars(self), name, part))
+        return found
+
     def state(self) -> State:
-        """All it has to remember."""
-        parts = {name: getattr(self, name) for name in self.memory}
-        return pack(**{name: part for name, part in parts.items() if part is not None})
+        """Its memory as arrays."""
+        return pack(**{name: part for _, name, part in self._parts(self.memory)})
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
-        for name in self.memory:
-            part: Any = getattr(self, name)
-            if part is None:
-                continue
+        for holder, name, part in self._parts(self.memory):
             if hasattr(part, "restore"):
                 part.restore(unpack(state, name))
             elif hasattr(part, "from_state"):
-                setattr(self, name, type(part).from_state(unpack(state, name)))
+                holder[name] = type(part).from_state(unpack(state, name))
             else:
                 kind = type(part) if isinstance(part, int | float) else np.array
-                setattr(self, name, kind(state[name]))
+                holder[name] = kind(state[name])
 
     def pool(self, other: Self) -> None:
         """Take in the samples of an independent run of the same case: only to read."""
-        for name in self.memory:
-            part = getattr(self, name)
+        both = zip(self._parts(self.memory), other._parts(self.memory), strict=True)
+        for (_, _, part), (_, _, theirs) in both:
             if hasattr(part, "pool"):
-                part.pool(getattr(other, name))
+                part.pool(theirs)
         for name in self.added:
             setattr(self, name, getattr(self, name) + getattr(other, name))

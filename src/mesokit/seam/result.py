@@ -1,4 +1,4 @@
-"""What an observable hands back: numbers with error bars, the theory for them, and comparisons."""
+"""Results of observables: numbers with error bars, the theory for them, and comparisons."""
 
 import importlib
 import math
@@ -68,7 +68,7 @@ class Comparison:
 
     @property
     def key(self) -> str:
-        """What was measured as one name for scripts and tables.
+        """Name of the number for scripts and tables.
 
         >>> Comparison("viscosity from curvature", 0.88, 0.01).key
         'viscosity-from-curvature'
@@ -241,7 +241,7 @@ def in_percent(percent: float) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Result(Shown):
-    """What an observable measured.
+    """Numbers that an observable measured, with error bars and theory.
 
     Parameters
     ----------

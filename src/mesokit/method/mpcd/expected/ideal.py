@@ -114,9 +114,10 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
     return Drift(setting.uniform_acceleration(case) * mobility, spread, note, memory)
 
 
-def flow_axis(case: Case) -> int:
-    """Number of the axis along which a force drives the fluid, x unless there is one."""
-    return setting.driven_axis(case) or 0
+def flow_axis(case: Case, given: str | None = None) -> int:
+    """Number of the given axis, else of that along which a force drives the fluid, else of x."""
+    axis = setting.driven_axis(case) if given is None else case.box.index(given)
+    return 0 if axis is None else axis
 
 
 def flow_sign(case: Case, axis: int) -> int:

@@ -88,3 +88,11 @@ def held(case: Case, kind: int | str) -> Held | None:
     time = None if alone is None else slowest / alone
     variances = shape.centre_variance, shape.mean, np.diag(shape.covariance)
     return Held(shape.centre, *variances, time)
+
+
+def squares_from_middle(places: Array, share: Array, length: float) -> Array:
+    """Square distances (n,) of places from the mean place of a distribution (n,) in a periodic
+    box, by the shorter way round."""
+    turns = np.angle(share @ np.exp(2j * np.pi * places / length))
+    away = places - turns * length / (2 * np.pi)
+    return np.asarray((away - length * np.rint(away / length)) ** 2)

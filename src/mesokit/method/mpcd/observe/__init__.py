@@ -1,4 +1,4 @@
-"""What is measured of fluids of MPCD and of what is in them. A new observable is a file here."""
+"""Observables of fluids of MPCD and of solutes in them. A new observable is a file here."""
 
 from mesokit.case.registry import parts_in
 from mesokit.observe import Observable

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, ClassVar, Literal
+from collections.abc import Iterator
+from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.box import AXES
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
@@ -18,7 +18,7 @@ from mesokit.method.mpcd.expected.selection import KIND, beads_of, molecule_of
 from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
-from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 
@@ -32,6 +32,8 @@ class BondCorrelation(Observable):
 
     quantity: Literal["bond-correlation"] = tag("bond-correlation")
     needs_fluid: ClassVar[bool] = False
+    value_label = "bond correlation"
+    units: ClassVar[dict[str, str]] = {"value": "a^2", "time": "tau", "component": ""}
     molecules: int = param(500, doc="molecules followed", ge=1)
     kind: int | str = param(1, doc=KIND)
     max_lag: int = param(500, doc="longest lag", unit="steps", ge=1)
@@ -42,65 +44,49 @@ class BondCorrelation(Observable):
 
 
 @accumulator_of(BondCorrelation)
-class BondCorrelationAccumulator:
+class BondCorrelationAccumulator(BlockAccumulator):
     """Bonds at many origins, for each pair of axes."""
 
-    def __init__(self, observable: BondCorrelation, case: Case) -> None:
+    memory: ClassVar[tuple[str, ...]] = ("origins",)
+
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         molecule = molecule_of(case, observable.quantity, observable.kind)
-        self.observable, self.case, self.name = observable, case, observable.label
         self.beads = beads_of(case, observable.molecules, observable.kind)
         self.ends = np.array(molecule.bonds)  # (bonds, 2)
         d, lags = case.box.dimension, max(1, observable.max_lag // observable.every)
-        self.pairs = [(k, k) for k in range(d)]
-        self.pairs += [(0, 1), (1, 0)] if case.box.sheared else []
+        pairs = [(k, k) for k in range(d)] + ([(0, 1), (1, 0)] if case.box.sheared else [])
         size = len(self.ends) * d
-        self.origins = [Origins(len(self.beads), size, lags) for _ in self.pairs]
+        # by pairs of axes, that of the later time first
+        self.origins = {
+            AXES[now] + AXES[before]: Origins(len(self.beads), size, lags) for now, before in pairs
+        }
 
     def observe(self, fluid: RunningFluid) -> None:
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         bonds = r[:, self.ends[:, 1]] - r[:, self.ends[:, 0]]
         shape = bonds.shape[1:]
-        for (now, before), origins in zip(self.pairs, self.origins, strict=True):
+        for name, origins in self.origins.items():
 
-            def product(old: Array, new: Array, now: int = now, before: int = before) -> Array:
+            def product(old: Array, new: Array, name: str = name) -> Array:
+                now, before = map(AXES.index, name)
                 past, present = (x.reshape(-1, *shape) for x in (old, new))
                 return np.asarray((present[:, :, now] * past[:, :, before]).mean(axis=1))
 
             origins.add(bonds.reshape(len(bonds), -1), product)
 
-    def state(self) -> State:
-        return pack(**dict(zip(self.names(), self.origins, strict=True)))
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        for name, origins in zip(self.names(), self.origins, strict=True):
-            origins.restore(unpack(state, name))
-
-    def pool(self, other: BondCorrelationAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        for own, others in zip(self.origins, other.origins, strict=True):
-            own.pool(others)
-
-    def names(self) -> list[str]:
-        """Of the pairs of axes, that of the later time first."""
-        return ["xyz"[now] + "xyz"[before] for now, before in self.pairs]
-
     def result(self) -> Result:
-        """The correlations, with theory."""
-        every = [origins.estimate() for origins in self.origins]
-        time = self.origins[0].sampled() * self.observable.every * self.case.fluid.timestep
+        every = [origins.estimate() for origins in self.origins.values()]
+        first = next(iter(self.origins.values()))
+        time = first.sampled() * self.observable.every * self.case.fluid.timestep
         expected = self.expected(time)
-        return Result(
-            quantity="bond-correlation",
-            name=self.name,
-            x={"time": time, "component": np.array(self.names())},
-            value=np.stack([one.value for one in every], axis=1),
-            error=np.stack([one.error for one in every], axis=1),
-            label="bond correlation",
-            units={"value": "a^2", "time": "tau", "component": ""},
+        return self.report(
+            {"time": time, "component": list(self.origins)},
+            every,
+            self.comparisons(every, expected),
             expected=expected,
             theory="Rouse",
-            comparisons=tuple(self.comparisons(every, expected)),
-            samples=self.origins[0].count,
+            samples=first.count,
         )
 
     def expected(self, time: Array) -> Array | None:
@@ -115,15 +101,12 @@ class BondCorrelationAccumulator:
         found = theory.bond_correlation(
             time, times.stress, square, case.box.steady_rate, case.box.dimension, len(self.ends)
         )
-        return np.stack([getattr(found, name) for name in self.names()], axis=1)
+        return np.stack([getattr(found, name) for name in self.origins], axis=1)
 
-    def comparisons(self, every: list[Estimate], expected: Array | None) -> list[Comparison]:
-        """By which factor each curve differs from that of theory, by least squares."""
+    def comparisons(self, every: list[Estimate], expected: Array | None) -> Iterator[Comparison]:
         if expected is None or not len(expected):
-            return []
-        found, note = [], shear_note(self.case)
-        for name, one, line in zip(self.names(), every, expected.T, strict=True):
-            weight = line / (line**2).sum()
-            value, error = one.scalar(one.value @ weight, weight)
-            found.append(Comparison(f"{name} over theory", value, error, 1.0, "", note))
-        return found
+            return
+        note = shear_note(self.case)
+        for name, one, line in zip(self.origins, every, expected.T, strict=True):
+            found = one.total(line / (line**2).sum())
+            yield Comparison(f"{name} over theory", *found, 1.0, "", note)

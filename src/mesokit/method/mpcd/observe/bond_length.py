@@ -1,5 +1,6 @@
-"""How long the bonds of molecules are, and which way they point."""
+"""Length and direction of the bonds of molecules."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -11,10 +12,10 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import bond_at_rest
 from mesokit.method.mpcd.expected.rheometer import bonds_in_shear, shear_note
 from mesokit.method.mpcd.expected.selection import KIND, bonds_of, group_of, molecule_of, of_fluid
-from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
+from mesokit.method.mpcd.observe.shared.tensor import MoleculeTensorAccumulator
 from mesokit.seam.engine import RunningFluid, Terms
 from mesokit.seam.observable import Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result, joined
 
 
 @component
@@ -23,6 +24,9 @@ class BondLength(Observable):
 
     quantity: Literal["bond-length"] = tag("bond-length")
     needs_fluid: ClassVar[bool] = False
+    drawing = "tensor"
+    value_label = "products of bond components"
+    units: ClassVar[dict[str, str]] = {"value": "a^2"}
     kind: int | str = param(1, doc=KIND)
 
     def check(self, case: Case) -> None:
@@ -34,12 +38,11 @@ class BondLength(Observable):
 class BondLengthAccumulator(MoleculeTensorAccumulator):
     """Block averages of the products."""
 
-    def __init__(self, observable: BondLength, case: Case) -> None:
-        molecules = group_of(case, "beads", observable.kind).number
-        super().__init__(observable, case, ("bonds",), observable.kind, molecules)
-        self.molecules = molecules
-        self.molecule = molecule_of(case, kind=observable.kind)
-        self.bonds = bonds_of(case, observable.kind)
+    def prepare(self) -> None:
+        case, kind = self.case, self.observable.kind
+        self.molecules = group_of(case, "beads", kind).number
+        self.prepare_for(("bonds",), self.molecules)
+        self.molecule, self.bonds = molecule_of(case, kind=kind), bonds_of(case, kind)
 
     def observe(self, fluid: RunningFluid) -> None:
         d, bonds = self.case.box.dimension, self.bonds.stop - self.bonds.start
@@ -59,11 +62,9 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         return self.own.group_of(molecule), [*products, *squares, (separation**2).sum(axis=1) ** 2]
 
     def result(self) -> Result:
-        """The products, and the mean square bond length beside that of Boltzmann."""
-        theory = "Boltzmann's distribution of a bond at rest"
-        if self.in_shear() is not None:
-            theory = "molecules in shear"
-        return self.tensors("bond-length", "products of bond components", "a^2", theory)
+        at_rest = self.in_shear() is None
+        law = "Boltzmann's distribution of a bond at rest" if at_rest else "molecules in shear"
+        return self.tensors(law)
 
     def square(self) -> float:
         """Mean square length; nan in flow, between walls, and where other beads matter."""
@@ -96,18 +97,13 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
             return None
         return bonds_in_shear(case)
 
-    def comparisons(self) -> list[Comparison]:
-        """Mean square and root mean square length."""
+    def comparisons(self) -> Iterator[Comparison]:
         mean, error = self.size(0)
         expected = float(np.trace(self.expected()[0]))
         note = "" if self.in_shear() is None else shear_note(self.case)
         root = max(mean, 0.0) ** 0.5
-        note = "; ".join(filter(None, (note, self.short_run())))
+        note = joined(note, self.short_run())
         error = setting.with_start(self.case, error, mean, self.blocks.series)
-        return [
-            Comparison("mean square bond length", mean, error, expected, "a^2", note),
-            Comparison(
-                "root mean square bond length", root, error / max(2 * root, 1e-300),
-                expected**0.5, "a", note,
-            ),
-        ]  # fmt: skip
+        yield Comparison("mean square bond length", mean, error, expected, "a^2", note)
+        spread = error / max(2 * root, 1e-300)
+        yield Comparison("root mean square bond length", root, spread, expected**0.5, "a", note)

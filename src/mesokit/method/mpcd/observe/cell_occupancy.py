@@ -1,7 +1,8 @@
-"""How many particles cells hold: a histogram beside Poisson."""
+"""Number of particles in cells: a histogram beside Poisson's."""
 
 import math
-from typing import Literal
+from collections.abc import Iterator
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,9 @@ class CellOccupancy(Observable):
     """
 
     quantity: Literal["cell-occupancy"] = tag("cell-occupancy")
+    drawing = "histograms"
+    value_label = "probability"
+    units: ClassVar[dict[str, str]] = {"of": ""}
 
     def check(self, case: Case) -> None:
         """Raise CaseError with too few whole cells."""
@@ -41,28 +45,21 @@ class CellOccupancy(Observable):
 class CellOccupancyAccumulator(BlockAccumulator):
     """Block averages of the shares of the cells, and of mean, variance and chi-square."""
 
-    def __init__(self, observable: CellOccupancy, case: Case) -> None:
+    def prepare(self) -> None:
+        case = self.case
         from scipy.stats import poisson
 
-        self.name, self.case = observable.label, case
         self.cells, mean = _whole_cells(case).ravel(), case.fluid.density
         self.first = max(0, math.floor(mean - REACH * math.sqrt(mean)))
         last = math.ceil(mean + REACH * math.sqrt(mean) + 2)
         self.numbers = np.arange(self.first, last + 1)
         self.probability = poisson.pmf(self.numbers, mean)
-        self.whole = self._whole()
+        self.whole = self.probability.copy()  # with the tails in the first and last bin
+        self.whole[0] = poisson.cdf(self.numbers[0], mean)
+        self.whole[-1] = poisson.sf(self.numbers[-1] - 1, mean)
         self.of = chi_square.classes(self.whole, int(self.cells.sum()))
         self.classes = chi_square.joined(self.whole, self.of)
         self.blocks = Blocks((len(self.numbers) + 3,))
-
-    def _whole(self) -> Array:
-        """Poisson probabilities (bins,), with the tails in the first and last bin."""
-        from scipy.stats import poisson
-
-        whole, mean = self.probability.copy(), self.case.fluid.density
-        whole[0] = poisson.cdf(self.numbers[0], mean)
-        whole[-1] = poisson.sf(self.numbers[-1] - 1, mean)
-        return np.asarray(whole)
 
     def observe(self, fluid: RunningFluid) -> None:
         (number,) = fluid.sums_of_particles(self.cell_of, len(self.cells), [1.0])
@@ -80,23 +77,15 @@ class CellOccupancyAccumulator(BlockAccumulator):
         return np.ravel_multi_index(tuple(place.T), size), [np.ones(len(place))]
 
     def result(self) -> Result:
-        """Probabilities of the numbers."""
         mean, error = self.blocks.mean(), self.blocks.error()
         known = self._even()
         expected = self.probability if known else np.full(len(self.numbers), np.nan)
-        return Result(
-            quantity="cell-occupancy",
-            drawing="histograms",
-            name=self.name,
-            x={"of": np.array(["number"]), "bin": self.numbers},
-            value=mean[None, :-3],
-            error=error[None, :-3],
+        return self.report(
+            {"of": ["number"], "bin": self.numbers},
+            (mean[None, :-3], error[None, :-3]),
+            list(self._comparisons(mean[-3:], error[-3:])),
             expected=expected[None],
-            label="probability",
-            units={"value": "", "of": ""},
             theory="Poisson",
-            comparisons=tuple(self._comparisons(mean[-3:], error[-3:])),
-            samples=self.blocks.count,
             extra={"edges": (np.append(self.numbers, self.numbers[-1] + 1) - 0.5)[None]},
         )
 
@@ -106,40 +95,24 @@ class CellOccupancyAccumulator(BlockAccumulator):
         pressed = setting.uniform_acceleration(case)[sorted(setting.closed_axes(case))]
         return case.fluid.molecule is None and not (setting.gathered(case) or pressed.any())
 
-    def _comparisons(self, mean: Array, error: Array) -> list[Comparison]:
-        """Variance over mean, and mean chi-square of a sample."""
-        case, number = self.case, int(self.cells.sum())
-        part = number / free_volume(case)
-        note = ""
+    def _comparisons(self, mean: Array, error: Array) -> Iterator[Comparison]:
+        case, number, note = self.case, int(self.cells.sum()), ""
         if not self._even():
             note = "no theory of such a fluid"
         elif setting.obstructed(case) and setting.driven(case):
             note = "approximate: the flow makes the density uneven"
-        probability = self.classes
-        density = case.fluid.density
         # the number of all particles is fixed: of each class, its covariance with the number
+        density, known = case.fluid.density, self._even()
         away = chi_square.joined(self.whole * (self.numbers - density), self.of)
-        lost = part * chi_square.taken(away / math.sqrt(density), probability)
-        nothing = not self._even()
-        spread = 1.0 - 1.0 / number  # about the mean of the sample, whatever others hold
-        return [
-            Comparison(
-                "variance of the number over its mean",
-                float(mean[1] / mean[0]),
-                float(error[1] / mean[0]),
-                math.nan if nothing else spread,
-                "",
-                note,
-            ),
-            Comparison(
-                "mean chi-square of the number",
-                float(mean[2]),
-                float(error[2]),
-                math.nan if nothing else len(probability) - 1.0 - lost,
-                "",
-                note or f"Poisson, {len(probability)} classes",
-            ),
-        ]
+        part = number / free_volume(case)
+        lost = part * chi_square.taken(away / math.sqrt(density), self.classes)
+        what, spread = "variance of the number over its mean", error[1] / mean[0]
+        # about the mean of the sample, whatever others hold
+        expected = 1.0 - 1.0 / number if known else math.nan
+        yield Comparison(what, mean[1] / mean[0], spread, expected, "", note)
+        expected = len(self.classes) - 1.0 - lost if known else math.nan
+        note = note or f"Poisson, {len(self.classes)} classes"
+        yield Comparison("mean chi-square of the number", mean[2], error[2], expected, "", note)
 
 
 def _whole_cells(case: Case) -> NDArray[np.bool_]:

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
-from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.columns import forgets, temperature
 from mesokit.method.mpcd.expected import setting
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import Observable, State, accumulator_of, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable, State, accumulator_of
 from mesokit.seam.result import NOT_STEADY, Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -36,16 +35,23 @@ class Conservation(Observable):
     in_open_box: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
     at_any_kT: ClassVar[tuple[str, ...]] = ("",)
+    drawing = "series"
+    value_label = "conserved quantities"
 
 
 @accumulator_of(Conservation)
-class ConservationAccumulator:
+class ConservationAccumulator(BlockAccumulator):
     """The first sample, a thinned time series, block averages and the largest drift."""
 
-    def __init__(self, observable: Conservation, case: Case) -> None:
-        self.name, self.case = observable.label, case
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "first", "drift", "counts")
+
+    def prepare(self) -> None:
+        case = self.case
         self.dimension = case.box.dimension
         self.bonded = case.fluid.molecule is not None or case.solutes is not None
+        driven, self.forgets = setting.driven(case), forgets(case)  # of a random solvent
+        self.conserves_momentum = not (case.walls or driven or self.forgets)
+        self.conserves_energy = self.conserves_momentum and not setting.isothermal(case)
         # number, momentum, the potential energy of bonds and pairs, kinetic energy, temperature
         width = 3 + self.dimension + self.bonded
         self.blocks = Blocks((width,))
@@ -78,26 +84,15 @@ class ConservationAccumulator:
         self.counts = np.array([kept, stride, samples + 1])
 
     def state(self) -> State:
-        return pack(
-            blocks=self.blocks,
-            rows=self.rows[: self.counts[0]],
-            first=self.first,
-            drift=self.drift,
-            counts=self.counts,
-        )
+        return super().state() | {"rows": self.rows[: self.counts[0]].copy()}
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        super().restore(state)
         self.rows[: len(state["rows"])] = state["rows"]
-        self.first, self.drift = np.array(state["first"]), np.array(state["drift"])
-        self.counts = np.array(state["counts"])
 
     def pool(self, other: ConservationAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read.
-
-        The time series becomes the mean of both, where both have kept a row.
-        """
-        self.blocks.pool(other.blocks)
+        """The time series becomes the mean of both, where both have kept a row."""
+        super().pool(other)
         own, others = self.rows[: self.counts[0]], other.rows[: other.counts[0]]
         _, here, there = np.intersect1d(own[:, 0], others[:, 0], return_indices=True)
         share = 1 / (1 + self.pooled)
@@ -110,7 +105,6 @@ class ConservationAccumulator:
         self.pooled += 1
 
     def result(self) -> Result:
-        """The time series; its error is that of one sample, which is not a mean: nan."""
         rows = self.rows[: self.counts[0]]
         names = ["number", *(f"momentum_{a}" for a in AXES[: self.dimension])]
         names += ["potential_energy"] * self.bonded + ["kinetic_energy", "temperature"]
@@ -118,63 +112,45 @@ class ConservationAccumulator:
         units = {"time": "tau", "number": "", "temperature": ENERGY}
         units |= {name: ENERGY for name in names if name.endswith("energy")}
         units |= {name: "m a/tau" for name in names if name.startswith("momentum")}
-        return Result(
-            quantity="conservation",
-            drawing="series",
-            name=self.name,
-            x={"time": rows[:, 1].copy(), "component": np.array(names)},
-            value=value,
-            error=np.full(value.shape, np.nan),
-            label="conserved quantities",
-            units={"value": ""} | units,
+        return self.report(
+            {"time": rows[:, 1].copy(), "component": names},
+            value,
+            self._comparisons(),
+            units=units,
             expected=self._expected(value, rows[:, 1]),
             theory="kT of the case, conservation",
-            comparisons=tuple(self._comparisons()),
             samples=int(self.counts[2]),
             extra={
                 "step": rows[:, 0].copy(),
                 "mean": self.blocks.mean(),
                 "mean_error": self.blocks.error(),
-                "conserves_momentum": int(self.conserves_momentum()),
-                "conserves_energy": int(self.conserves_energy()),
+                "conserves_momentum": int(self.conserves_momentum),
+                "conserves_energy": int(self.conserves_energy),
                 "driven": int(setting.driven(self.case)),
                 "not_steady": self._not_steady(),
             },
         )
 
-    def forgets(self) -> bool:
-        """Whether the solvent takes momentum and energy, and forgets them."""
-        return forgets(self.case)
-
-    def conserves_momentum(self) -> bool:
-        """Nothing outside acts on the fluid."""
-        return not (self.case.walls or setting.driven(self.case) or self.forgets())
-
-    def conserves_energy(self) -> bool:
-        """No thermostat, and no work is done."""
-        return self.conserves_momentum() and not setting.isothermal(self.case)
-
     def _expected(self, value: Array, time: Array) -> Array:
         expected = np.full(value.shape, np.nan)
         expected[:, 0] = self.first[0]
-        if self.conserves_momentum():
+        if self.conserves_momentum:
             expected[:, 1 : self.dimension + 1] = self.first[1 : self.dimension + 1]
-        elif not self.forgets() and len(time):
+        elif not self.forgets and len(time):
             for axis in range(self.dimension):
                 expected[:, 1 + axis] = self._driven_momentum(axis, time - time[0])
-        if self.conserves_energy() and not self.bonded:
+        if self.conserves_energy and not self.bonded:
             expected[:, -2:] = self.first[-2:]
-        elif setting.isothermal(self.case) or self.forgets():
+        elif setting.isothermal(self.case) or self.forgets:
             energy, momentum = self._held_energy()
-            expected[:, -2] = energy
-            number = int(self.first[0])
-            expected[:, -1] = temperature(self.case, number, momentum, energy)
+            warmth = temperature(self.case, int(self.first[0]), momentum, energy)
+            expected[:, -2:] = energy, warmth
         return expected
 
     def _held_energy(self) -> tuple[float, Array]:
         """Kinetic energy and momentum of the steady flow of a fluid at kT, nan without theory."""
         case, d = self.case, self.dimension
-        mass, free = setting.superficial_mass(case), not (case.walls or self.forgets())
+        mass, free = setting.superficial_mass(case), not (case.walls or self.forgets)
         squares, momentum = 0.0, np.zeros(d)
         for axis in range(d):
             flow = setting.flow(case, axis)
@@ -207,45 +183,21 @@ class ConservationAccumulator:
         edges = np.linspace(0.0, case.box.size[flow.across], 65)
         return mass * float(setting.bin_average(flow.profile, edges).mean())
 
-    def _at_rest(self) -> bool:
-        held = setting.isothermal(self.case) or self.forgets()
-        return held and not setting.driven(self.case)
-
-    def _comparisons(self) -> list[Comparison]:
-        fluid, found = self.case.fluid, []
-        if self.counts[2] == 0:
-            return []
-        if self.conserves_momentum():
+    def _comparisons(self) -> Iterator[Comparison]:
+        fluid, exact = self.case.fluid, "exact: only rounding may show"
+        if self.conserves_momentum:
             # the total is zero, so relative to what the momenta would add up to without signs
-            scale = self.first[0] * fluid.mass * (fluid.kT / fluid.mass) ** 0.5
-            found.append(
-                Comparison(
-                    "largest drift of momentum",
-                    float(self.drift[0] / scale),
-                    0.0,
-                    0.0,
-                    "N sqrt(m kT)",
-                    "exact: only rounding may show",
-                )
-            )
-        if self.conserves_energy():
-            kind, expected, note = "kinetic", 0.0, "exact: only rounding may show"
+            drift = self.drift[0] / (self.first[0] * fluid.mass * (fluid.kT / fluid.mass) ** 0.5)
+            yield Comparison("largest drift of momentum", drift, 0.0, 0.0, "N sqrt(m kT)", exact)
+        if self.conserves_energy:
+            drift = self.drift[1] / float(self.first[self.dimension + 1 : -1].sum())
             if self.bonded:
-                kind, expected = "total", np.nan
-                note = "falls with the square of the sub-step"
-            first = float(self.first[self.dimension + 1 : -1].sum())
-            found.append(
-                Comparison(
-                    f"largest relative drift of {kind} energy",
-                    float(self.drift[1] / first),
-                    0.0,
-                    expected,
-                    "",
-                    note,
-                )
-            )
-        mean, error = self.blocks.mean()[-1], self.blocks.error()[-1]
-        if self._at_rest():
+                kind, expected, note = "total", np.nan, "falls with the square of the sub-step"
+            else:
+                kind, expected, note = "kinetic", 0.0, exact
+            what = f"largest relative drift of {kind} energy"
+            yield Comparison(what, drift, 0.0, expected, "", note)
+        if (setting.isothermal(self.case) or self.forgets) and not setting.driven(self.case):
+            mean, error = self.blocks.mean()[-1], self.blocks.error()[-1]
             note = setting.temperature_note(self.case)
-            found.append(Comparison("temperature", float(mean), float(error), fluid.kT, "", note))
-        return found
+            yield Comparison("temperature", mean, error, fluid.kT, "", note)

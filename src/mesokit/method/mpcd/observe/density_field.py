@@ -1,5 +1,6 @@
 """Map of the density over two axes."""
 
+from collections.abc import Iterator
 from typing import Literal
 
 import numpy as np
@@ -23,6 +24,8 @@ class DensityField(Field):
     """Particles per cell on a grid over two axes."""
 
     quantity: Literal["density-field"] = tag("density-field")
+    drawing = "map"
+    value_label = "density"
 
 
 @accumulator_of(DensityField)
@@ -34,11 +37,9 @@ class DensityFieldAccumulator(FieldAccumulator):
         self.bin_volume = np.prod(case.box.size) / np.prod(self.bins)
 
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
-        """Particles per volume."""
         return number[None] / self.bin_volume
 
     def result(self) -> Result:
-        """The map; uniform unless a force presses the fluid to a plate."""
         if setting.obstructed(self.case):
             share = solids_of(self.case).open_share(self.axes, self.bins)
             expected = np.where(share > 0, self.case.fluid.density * share, np.nan)
@@ -49,29 +50,22 @@ class DensityFieldAccumulator(FieldAccumulator):
                 setting.uniform_acceleration(self.case)[axis]
                 for axis in setting.closed_axes(self.case)
             )
-        return Result(
-            quantity="density-field",
-            drawing="map",
-            name=self.name,
-            x=self.coordinates,
-            value=self.blocks.mean()[0],
-            error=self.blocks.error()[0],
-            label="density",
+        return self.report(
+            self.coordinates,
+            (self.blocks.mean()[0], self.blocks.error()[0]),
+            self.comparisons(),
             units={"value": self.case.box.density_unit} | dict.fromkeys(self.coordinates, "a"),
             expected=None if pressed else expected,
             theory="uniform",
-            comparisons=self.comparisons(),
-            samples=self.blocks.count,
             extra={
                 "bins_per_cell": self.observable.bins_per_cell,
                 "dimension": self.case.box.dimension,
             },
         )
 
-    def comparisons(self) -> tuple[Comparison, ...]:
-        """How far the density differs from its mean, less what noise adds."""
+    def comparisons(self) -> Iterator[Comparison]:
         if not setting.driven(self.case) or self.blocks.count < 4:
-            return ()
+            return
         share = np.ones(self.bins)
         if setting.obstructed(self.case):
             share = solids_of(self.case).open_share(self.axes, self.bins)
@@ -91,4 +85,4 @@ class DensityFieldAccumulator(FieldAccumulator):
         off = float(np.hypot(moved, np.sqrt(2 * (error**4).sum()) / density.size))
         off = min(off / (2 * spread), off**0.5) if spread else off**0.5
         values = 100 * spread / mean, 100 * off / mean
-        return (Comparison("density spread", *values, unit="%", note=SPREAD),)
+        yield Comparison("density spread", *values, unit="%", note=SPREAD)

@@ -31,6 +31,8 @@ class DensityGradient(Observable):
     """
 
     quantity: Literal["density-gradient"] = tag("density-gradient")
+    drawing = "profile"
+    value_label = "density"
     axis: Axis | None = param(
         None, doc="the axis (that of the force on the fluid, x unless there is one)"
     )
@@ -44,42 +46,35 @@ class DensityGradient(Observable):
 
     def check(self, case: Case) -> None:
         """Raise CaseError for a closed axis, and a length that does not divide the box."""
-        axis = self.axis_of(case)
+        axis, length, repeats = self.unit_cells(case)
         if axis in setting.closed_axes(case):
             raise CaseError(f"axis = {AXES[axis]!r}: plates close it; for that see density-profile")
-        slices = self.length_of(case) * self.bins_per_cell
-        for number, key in ((self.repeats(case), "length"), (slices, "bins_per_cell")):
+        for number, key, given in (
+            (repeats, "length", length),
+            (length * self.bins_per_cell, "bins_per_cell", self.bins_per_cell),
+        ):
             if abs(number - round(number)) > 1e-9 * number or round(number) < 1:
-                given = self.length_of(case) if key == "length" else self.bins_per_cell
                 raise CaseError(
                     f"{key} = {given:g}: expected whole numbers of unit cells in the box "
                     f"({case.box.size[axis]:g}), and of slices in a unit cell "
-                    f"({self.length_of(case):g} long)"
+                    f"({length:g} long)"
                 )
 
-    def axis_of(self, case: Case) -> int:
-        """Number of the axis."""
-        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
-
-    def length_of(self, case: Case) -> float:
-        """Of a unit cell."""
-        return self.length or unit_cell(case, self.axis_of(case))
-
-    def repeats(self, case: Case) -> float:
-        """Unit cells in the box."""
-        return float(case.box.size[self.axis_of(case)]) / self.length_of(case)
+    def unit_cells(self, case: Case) -> tuple[int, float, float]:
+        """Number of the axis, length of a unit cell, and number of unit cells in the box."""
+        axis = flow_axis(case, self.axis)
+        length = self.length or unit_cell(case, axis)
+        return axis, length, float(case.box.size[axis]) / length
 
 
 @accumulator_of(DensityGradient)
 class DensityGradientAccumulator(BlockAccumulator):
     """Particles in each slice of a unit cell."""
 
-    def __init__(self, observable: DensityGradient, case: Case) -> None:
-        self.case, self.name = case, observable.label
-        self.axis = observable.axis_of(case)
-        self.length, self.repeats = observable.length_of(case), round(observable.repeats(case))
-        self.slices = round(self.length * observable.bins_per_cell)
-        self.bins_per_cell = observable.bins_per_cell
+    def prepare(self) -> None:
+        self.axis, self.length, repeats = self.observable.unit_cells(self.case)
+        self.repeats = round(repeats)
+        self.slices = round(self.length * self.observable.bins_per_cell)
         self.bins = self.slices * self.repeats
         self.blocks = Blocks((self.slices,))
 
@@ -96,40 +91,32 @@ class DensityGradientAccumulator(BlockAccumulator):
         return np.asarray(whole * share.reshape(self.repeats, self.slices).sum(axis=0))
 
     def result(self) -> Result:
-        """Density over the unit cell, and how uneven it is."""
         volume, every = self.volume(), of_mean(self.blocks)
         seen = volume > OPEN * volume.max()
         scale = np.where(seen, 1 / np.where(seen, volume, 1.0), np.nan)
         axis, unit = AXES[self.axis], self.case.box.density_unit
         density = Estimate(every.value * scale, every.residuals * scale, every.weights)
         mean = every.value.sum() / volume.sum()
-        uniform = None
-        if not (setting.gathered(self.case) or setting.driven(self.case)):
-            uniform = np.where(seen, mean, np.nan)
-        found = tuple(self.comparisons(density, mean, seen)) if self.blocks.count else ()
-        known = compression(self.case)
-        return Result(
-            quantity="density-gradient",
-            drawing="profile",
-            name=self.name,
-            x={axis: (np.arange(self.slices) + 0.5) * self.length / self.slices},
-            value=density.value,
-            error=density.error if self.blocks.count else np.full(self.slices, np.nan),
-            label="density",
+        pressed, known = (
+            setting.gathered(self.case) or setting.driven(self.case),
+            compression(self.case),
+        )
+        error = density.error if self.blocks.count else np.full(self.slices, np.nan)
+        return self.report(
+            {axis: (np.arange(self.slices) + 0.5) * self.length / self.slices},
+            (density.value, error),
+            self.comparisons(density, mean, seen),
             units={"value": unit, axis: "a"},
-            expected=uniform,
+            expected=None if pressed else np.where(seen, mean, np.nan),
             theory="uniform",
-            comparisons=found,
-            samples=self.blocks.count,
             extra={
-                "bins_per_cell": self.bins_per_cell,
+                "bins_per_cell": self.observable.bins_per_cell,
                 "length": self.length,
                 "acceleration_length_over_kT": known[1] if known else 0.0,
             },
         )
 
     def comparisons(self, density: Estimate, mean: float, seen: Array) -> Iterator[Comparison]:
-        """Amplitude of the wave that is as long as the unit cell, extremes, spread."""
         known = compression(self.case)
         said = f"acceleration x length/(kT/m) is {known[1]:.2g}" if known else ""
         place = 2 * np.pi * (np.arange(self.slices) + 0.5) / self.slices

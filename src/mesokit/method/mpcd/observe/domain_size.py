@@ -1,6 +1,7 @@
-"""How large the domains of two species are, in time."""
+"""Size of the domains of two species in time."""
 
 import math
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -30,6 +31,8 @@ class DomainSize(Observable):
     """
 
     quantity: Literal["domain-size"] = tag("domain-size")
+    value_label = "size of domains"
+    units: ClassVar[dict[str, str]] = {"value": "a", "time": "tau"}
     largest: float = param(
         math.pi / 2, doc="longest wave vector that counts", unit="1/a", gt=0, le=math.pi
     )
@@ -53,8 +56,9 @@ class DomainSizeAccumulator(BlockAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("series", "samples")
     added: ClassVar[tuple[str, ...]] = ("samples",)
 
-    def __init__(self, observable: DomainSize, case: Case) -> None:
-        self.name, self.size = observable.label, case.box.size
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
+        self.size = case.box.size
         first, second = (kind.number for kind in case.groups[0].kinds)
         self.first, mean = first, (first - second) / (first + second)
         self.colours = 1.0 - mean, -1.0 - mean  # of one of either species, 0 in the mean
@@ -92,26 +96,19 @@ class DomainSizeAccumulator(BlockAccumulator):
         return float(2 * math.pi * weight.sum() / (weight @ self.lengths))
 
     def result(self) -> Result:
-        """The series; a sample has no error bar: nan."""
         value = self.series.values()[:, 0]
-        return Result(
-            quantity="domain-size",
-            name=self.name,
-            x={"time": self.series.time()},
-            value=value,
-            error=np.full(len(value), np.nan),
-            label="size of domains",
-            units={"value": "a", "time": "tau"},
-            comparisons=tuple(self.comparisons(value)),
+        return self.report(
+            {"time": self.series.time()},
+            value,
+            self.comparisons(value),
             samples=int(self.samples[0]),
             extra={"samples_per_row": self.series.stride},
         )
 
-    def comparisons(self, value: Array) -> list[Comparison]:
-        """The size at the end, with the scatter there: samples are not independent."""
+    def comparisons(self, value: Array) -> Iterator[Comparison]:
         late = value[-max(2, math.ceil(LATE * len(value))) :]
         if len(late) < 2:
-            return []
+            return
         note = "mean and scatter of the last tenth"
         mean, scatter = float(late.mean()), float(late.std(ddof=1))
-        return [Comparison("size of domains at the end", mean, scatter, math.nan, "a", note)]
+        yield Comparison("size of domains at the end", mean, scatter, math.nan, "a", note)

@@ -134,7 +134,6 @@ class DynamicModuliAccumulator(BlockAccumulator):
         return expected
 
     def comparisons(self) -> Iterator[Comparison]:
-        """Totals, and the viscosity that the loss modulus is."""
         if not self.blocks.count:
             return
         mean, error, expected = self.blocks.mean()[-1], self.blocks.error()[-1], self.expected()[-1]
@@ -148,7 +147,7 @@ class DynamicModuliAccumulator(BlockAccumulator):
             yield Comparison(what, eta, spread, known, "a^2/tau", notes[1])
 
     def note(self, k: int) -> str:
-        """Why theory is off for one of both moduli by more than its error bar, "" if it is not."""
+        """Reason for which theory of a modulus is off by more than its error, "" if it is not."""
         if self.case.fluid.molecule is not None:
             return rouse_note(self.case)
         if setting.caveat(self.case):

@@ -1,5 +1,6 @@
 """Volume flux through the box, and the permeability that it means."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -9,16 +10,12 @@ from mesokit.case.box import AXES, Axis
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.flow_memory import (
-    FlowMemory,
-    build_up_of,
-    flow_memory,
-)
+from mesokit.method.mpcd.observe.shared.flow_memory import FlowMemory, build_up_of, flow_memory
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.estimate import Estimate, of_mean
+from mesokit.seam.estimate import of_mean
 from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Comparison, Result, joined
 from mesokit.statistics import Blocks, TimeSeries
 
 FLUX = {2: "a^2/tau", 3: "a^3/tau"}  # by dimension
@@ -36,6 +33,8 @@ class FlowRate(Observable):
     quantity: Literal["flow-rate"] = tag("flow-rate")
     asks_transport: ClassVar[bool] = True
     of_built_up_flow: ClassVar[bool] = True
+    drawing = "flow series"
+    units: ClassVar[dict[str, str]] = {"value": "a/tau", "time": "tau"}
     axis: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")
 
     def check(self, case: Case) -> None:
@@ -60,36 +59,26 @@ class FlowRateAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series")
 
-    def __init__(self, observable: FlowRate, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
-        self.axis = observable.seen(case)
-        self.mass = setting.superficial_mass(case)
+    def prepare(self) -> None:
+        self.axis = self.observable.seen(self.case)
+        self.mass = setting.superficial_mass(self.case)
         self.blocks, self.series = Blocks(), TimeSeries(1)
 
     def observe(self, fluid: RunningFluid) -> None:
-        _, momentum, _ = fluid.totals()
-        velocity = momentum[self.axis] / self.mass
+        velocity = fluid.totals()[1][self.axis] / self.mass
         self.blocks.add(velocity)
         self.series.add(fluid.time, [velocity])
 
     def result(self) -> Result:
-        """The velocity in time, whose points are no means of their own: the error is nan."""
-        time, value = self.series.time(), self.series.values()[:, 0]
+        value = self.series.values()[:, 0]
         known, theory_name = self.expected()
-        found = self.comparisons(known, theory_name) if self.blocks.count else []
-        return Result(
-            quantity="flow-rate",
-            drawing="flow series",
-            name=self.name,
-            x={"time": time},
-            value=value,
-            error=np.full(value.shape, np.nan),
+        return self.report(
+            {"time": self.series.time()},
+            value,
+            self.comparisons(known, theory_name),
             label=f"mean velocity along {AXES[self.axis]}",
-            units={"value": "a/tau", "time": "tau"},
             expected=None if np.isnan(known) else np.full(value.shape, known),
             theory=theory_name,
-            comparisons=tuple(found),
-            samples=self.blocks.count,
             extra={
                 "mean": float(self.blocks.mean()),
                 "mean_error": self.error(),
@@ -98,55 +87,32 @@ class FlowRateAccumulator(BlockAccumulator):
         )
 
     def flow_memory(self) -> FlowMemory:
-        """How long the run is beside the memory of the flow."""
         momentum = float(self.blocks.mean()) * self.mass
         return flow_memory(self.case, self.axis, momentum, self.blocks, self.observable.every)
 
     def build_up(self) -> BuildUp | None:
-        """How the flow came from rest."""
         return build_up_of(self.flow_memory(), self.case)
 
     def error(self) -> float:
-        """Standard error of the mean velocity."""
         return max(float(self.blocks.error()), self.flow_memory().least / self.mass)
 
-    def comparisons(self, known: float, name: str) -> list[Comparison]:
-        """Mean velocity, flow rate, permeability."""
-        mean: Estimate = of_mean(self.blocks)
-        speed, error = float(mean.value), self.error()
-        size, letter = np.array(self.case.box.size, float), AXES[self.axis]
+    def comparisons(self, known: float, name: str) -> Iterator[Comparison]:
+        speed, error, case = float(of_mean(self.blocks).value), self.error(), self.case
+        along, short = f"along {AXES[self.axis]}", self.flow_memory().note
+        size = np.array(case.box.size, float)
         area = float(np.prod(size) / size[self.axis])
-        short = self.flow_memory().note
-        off = setting.caveat(self.case) or (setting.rarefied(self.case) if name else "")
-        note = "; ".join(filter(None, (off or name, short)))
-        found = [
-            Comparison(f"mean velocity along {letter}", speed, error, known, "a/tau", note),
-            Comparison(
-                f"flow rate along {letter}",
-                area * speed,
-                area * error,
-                area * known,
-                FLUX[len(size)],
-                note,
-            ),
-        ]
-        acceleration, coefficients = (
-            setting.uniform_acceleration(self.case),
-            setting.transport(self.case),
-        )
-        if setting.driven_axis(self.case) == self.axis and coefficients is not None:
-            scale = coefficients.viscosity / float(acceleration[self.axis])
-            found.append(
-                Comparison(
-                    f"permeability along {letter}",
-                    scale * speed,
-                    abs(scale) * error,
-                    scale * known,
-                    "a^2",
-                    "; ".join(filter(None, [name, "theoretical viscosity", short])),
-                )
-            )
-        return found
+        off = setting.caveat(case) or (setting.rarefied(case) if name else "")
+        note = joined(off or name, short)
+        yield Comparison(f"mean velocity {along}", speed, error, known, "a/tau", note)
+        flux = area * speed, area * error, area * known
+        yield Comparison(f"flow rate {along}", *flux, FLUX[len(size)], note)
+        coefficients = setting.transport(case)
+        if setting.driven_axis(case) == self.axis and coefficients is not None:
+            g = float(setting.uniform_acceleration(case)[self.axis])
+            scale = coefficients.viscosity / g
+            found = scale * speed, abs(scale) * error, scale * known
+            note = joined(name, "theoretical viscosity", short)
+            yield Comparison(f"permeability {along}", *found, "a^2", note)
 
     def expected(self) -> tuple[float, str]:
         """The superficial velocity and what says so; nan where nothing is known."""
@@ -161,22 +127,19 @@ class FlowRateAccumulator(BlockAccumulator):
             return 0.0, "rest"
         if coefficients is None or not acceleration or setting.driven_axis(case) != self.axis:
             return np.nan, ""
-        viscosity, pipe, lattice = (
-            coefficients.viscosity,
-            recognise.pipe(case),
-            recognise.lattice(case),
-        )
+        viscosity = coefficients.viscosity
+        pipe, lattice = recognise.pipe(case), recognise.lattice(case)
         if pipe is not None and pipe.axis == self.axis:
             rate = theory.hagen_poiseuille_flow_rate(pipe.radius, acceleration, viscosity)
             area = np.prod(case.box.size) / case.box.size[self.axis]
             return float(rate / area), "hagen-poiseuille"
         if lattice is None or self.axis not in lattice.across:
             return np.nan, ""
+        law, permeability = "cubic array, slow flow", theory.cubic_array_permeability
+        if len(lattice.across) == 2:
+            law, permeability = "square array, slow flow", theory.square_array_permeability
         try:
-            if len(lattice.across) == 2:
-                k = theory.square_array_permeability(lattice.concentration, lattice.pitch)
-                return k * acceleration / viscosity, "square array, slow flow"
-            k = theory.cubic_array_permeability(lattice.concentration, lattice.pitch)
-            return k * acceleration / viscosity, "cubic array, slow flow"
+            k = permeability(lattice.concentration, lattice.pitch)
+            return k * acceleration / viscosity, law
         except ValueError:  # denser than the theory goes
             return np.nan, ""

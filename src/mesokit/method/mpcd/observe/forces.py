@@ -1,5 +1,6 @@
 """Force and torque of the fluid on each solid."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -13,18 +14,13 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.flow_memory import (
-    FlowMemory,
-    build_up_of,
-    flow_memory,
-)
-from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
-from mesokit.method.mpcd.observe.wall_stress import PLATES, balance
+from mesokit.method.mpcd.observe.shared.flow_memory import FlowMemory, build_up_of, flow_memory
+from mesokit.method.mpcd.observe.wall_stress import PLATES, SinceLast, balance, require_counted
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import SURE, Estimate, noted, of_mean
 from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result, with_error
+from mesokit.seam.result import Array, Comparison, Result, joined, with_error
 from mesokit.statistics import Blocks, TimeSeries
 
 FORCE, TORQUE = "m a/tau^2", "m a^2/tau^2"
@@ -49,6 +45,8 @@ class Forces(Observable):
     at_any_kT: ClassVar[tuple[str, ...]] = ("force on all solids",)
     asks_transport: ClassVar[bool] = True
     measures: ClassVar[tuple[str, ...]] = ("walls",)
+    drawing = "per solid"
+    value_label = "force and torque on each solid"
     length: float | None = param(
         None, doc="length D of the coefficients (none unless said)", unit="a", gt=0
     )
@@ -86,8 +84,8 @@ class ForcesAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series", "walls")
 
-    def __init__(self, observable: Forces, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        case = self.case
         self.dimension = d = case.box.dimension
         slit = slit_of(case)
         self.bodies = list(PLATES) if slit else solids_of(case).names
@@ -108,37 +106,28 @@ class ForcesAccumulator(BlockAccumulator):
             self.series.add(fluid.time - 0.5 * steps * self.case.fluid.timestep, taken)
 
     def result(self) -> Result:
-        """Every component on every solid; the time series is in `extra`."""
-        size, expected = int(np.prod(self.shape)), self.expected()
+        expected, every = self.expected(), (self.blocks.mean(), self.errors())
+        value, error = (of[: np.prod(self.shape)].reshape(self.shape) for of in every)
+        plates = np.isin(range(len(self.bodies)), self.obstacles(), invert=True)
+        pivots = [body.pieces[0].pivot for body in solids_of(self.case).bodies]
         units = {name: FORCE if name[0] == "f" else TORQUE for name in self.components}
-        return Result(
-            quantity="forces",
-            drawing="per solid",
-            name=self.name,
-            x={"body": np.array(self.bodies), "component": np.array(self.components)},
-            value=self.blocks.mean()[:size].reshape(self.shape),
-            error=self.errors()[:size].reshape(self.shape),
-            label="force and torque on each solid",
-            units={"value": ""} | units,
+        return self.report(
+            {"body": self.bodies, "component": self.components},
+            (value, error),
+            self.comparisons(expected),
+            units=units,
             expected=expected,
             theory="momentum balance",
-            comparisons=tuple(self.comparisons(expected)) if self.blocks.count else (),
-            samples=self.blocks.count,
             extra={
                 "coefficient": self.coefficient(),
                 "time": self.series.time(),
                 "series": self.series.values().reshape(-1, *self.shape),
-                "plates": np.isin(range(len(self.bodies)), self.obstacles(), invert=True).astype(
-                    int
-                ),
-                "pivot": np.array(
-                    [body.pieces[0].pivot for body in solids_of(self.case).bodies], float
-                ),
+                "plates": plates.astype(int),
+                "pivot": np.array(pivots, float),
             },
         )
 
     def errors(self) -> Array:
-        """Standard errors of all components, and of the momentum."""
         found = of_mean(self.blocks, falling=True).error
         known = self.balanced_error()
         if len(self.bodies) == 1 and np.isfinite(known):
@@ -155,9 +144,7 @@ class ForcesAccumulator(BlockAccumulator):
         case, count = self.case, self.blocks.count
         uniform = case.fluid.force.uniform(self.dimension) is not None
         # under shear images hand on momentum, and what heats has no one kT
-        known = uniform and not case.box.sheared
-        known = known and setting.at_kT(case)
-        if not known or not count:
+        if case.box.sheared or not (uniform and setting.at_kT(case) and count):
             return float("nan")
         mass = setting.mass_density(case) * free_volume(case)
         time = count * self.observable.every * case.fluid.timestep
@@ -168,12 +155,6 @@ class ForcesAccumulator(BlockAccumulator):
         solids = solids_of(self.case)
         walls = [self.case.walls[number] for number in solids.walls]
         return [i for i, wall in enumerate(walls) if not isinstance(wall, Plates)]
-
-    def plates(self) -> NDArray[np.int64]:
-        """1 for each body that is a plate, 0 for the others."""
-        plates = np.ones(len(self.bodies), np.int64)
-        plates[self.obstacles()] = 0
-        return plates
 
     def total(self) -> Array:
         """(d,): the force on the fluid, all of which the solids take in a steady flow.
@@ -193,7 +174,7 @@ class ForcesAccumulator(BlockAccumulator):
         return total
 
     def expected(self) -> Array:
-        """What a balance or a theory says of each solid, nan elsewhere."""
+        """Force and torque on each solid by a balance or a theory, nan elsewhere."""
         case, d = self.case, self.dimension
         expected = np.full(self.shape, np.nan)
         wall, gap = slit_of(case), recognise.gap(case)
@@ -215,31 +196,22 @@ class ForcesAccumulator(BlockAccumulator):
         coefficients = setting.transport(self.case)
         if coefficients is None:
             return np.nan, np.nan
-        rho = setting.mass_density(self.case)
-        one_sided = 0.0
+        one_sided, radii = 0.0, (gap.inner, gap.outer)
         if "angular momentum" not in self.case.fluid.collision.conserves:
-            one_sided = rho * coefficients.viscosity_collisional
+            one_sided = setting.mass_density(self.case) * coefficients.viscosity_collisional
         length = self.case.box.size[gap.axis] if self.dimension == 3 else 1.0
-        inner, outer = theory.taylor_couette_torque(
-            gap.inner,
-            gap.outer,
-            gap.inner_rate,
-            gap.outer_rate,
-            coefficients.dynamic_viscosity,
-            one_sided,
-        )
+        rates, eta = (gap.inner_rate, gap.outer_rate), coefficients.dynamic_viscosity
+        inner, outer = theory.taylor_couette_torque(*radii, *rates, eta, one_sided)
         return length * inner, length * outer
 
-    def comparisons(self, expected: Array) -> list[Comparison]:
-        """The balance of all forces, shares and torques of the solids, and their coefficients."""
+    def comparisons(self, expected: Array) -> Iterator[Comparison]:
         mean, total = of_mean(self.blocks, falling=True), self.total()
         force = np.arange(np.prod(self.shape)).reshape(self.shape)  # places of the components
-        found = []
         few = len(self.bodies) <= NAMED
         for axis in map(int, np.flatnonzero(setting.uniform_acceleration(self.case))):
             every = np.zeros(mean.value.shape)
             every[force[:, axis]] = 1.0
-            value, error = mean.scalar(every @ mean.value, every)
+            value, error = mean.total(every)
             known, short = self.balanced_error(), self.flow_memory(axis).note
             note = "the force on the fluid; steady flow"
             if np.isnan(total[axis]):
@@ -247,41 +219,37 @@ class ForcesAccumulator(BlockAccumulator):
             elif np.isfinite(known):  # however short the run
                 error = known
             else:
-                note = "; ".join(filter(None, (note, short)))
+                note = joined(note, short)
             what = f"force on all solids along {AXES[axis]}"
-            found.append(Comparison(what, value, error, float(total[axis]), FORCE, note))
+            yield Comparison(what, value, error, total[axis], FORCE, note)
             if few and len(self.bodies) > 1 and np.isfinite(total[axis]):
-                found += self.shares(mean, force[:, axis], axis, expected, short)
+                yield from self.shares(mean, force[:, axis], axis, expected, short)
         for body, column in np.argwhere(expected[:, self.dimension :] != 0) if few else ():
             place = body, self.dimension + column
             if np.isfinite(expected[place]):
                 one = np.zeros(mean.value.shape)
                 one[force[place]] = 1.0
-                value, error = mean.scalar(mean.value[force[place]], one)
                 note = setting.caveat(self.case) or self.note_on_torque(int(body))
                 what = f"torque on {self.bodies[body]}"
-                found.append(Comparison(what, value, error, float(expected[place]), TORQUE, note))
+                yield Comparison(what, *mean.total(one), expected[place], TORQUE, note)
         if self.observable.length is not None:
-            found += self.coefficients(mean, force, few)
-        return found
+            yield from self.coefficients(mean, force, few)
 
     def shares(
         self, mean: Estimate, places: NDArray[np.intp], axis: int, expected: Array, short: str
-    ) -> list[Comparison]:
-        """What part of the force on the fluid each solid takes; `short`: the caveat of the run."""
-        total, found = self.total()[axis], []
-        note = "; ".join(filter(None, ("of the force on the fluid", short)))
+    ) -> Iterator[Comparison]:
+        """Part of the force on the fluid that each solid takes; `short`: the caveat of the run."""
+        total = self.total()[axis]
+        note = joined("of the force on the fluid", short)
         for body, place in enumerate(places):
             gradient = np.zeros(mean.value.shape)
             gradient[place] = 100.0 / total
-            value, error = mean.scalar(gradient @ mean.value, gradient)
             what = f"share of {self.bodies[body]} along {AXES[axis]}"
             known = 100.0 * float(expected[body, axis] / total)
-            found.append(Comparison(what, value, error, known, "%", note))
-        return found
+            yield Comparison(what, *mean.total(gradient), known, "%", note)
 
     def coefficient(self) -> float:
-        """What turns a force along the flow into its coefficient, nan without a length."""
+        """Coefficient over force along the flow, nan without a length."""
         if self.observable.length is None or not self.blocks.count:
             return np.nan
         if self.observable.speed is not None:
@@ -290,7 +258,7 @@ class ForcesAccumulator(BlockAccumulator):
         return self.scale(speed) if abs(speed) > SURE * spread else np.nan
 
     def note_on_torque(self, body: int) -> str:
-        """How well cells resolve one of two round surfaces: the inner one takes too little.
+        """Note on how well cells resolve a round surface: the inner one takes too little.
 
         Measured: 31 % less at a radius of 1, 15 % at 2; the outer one within 3 %.
         """
@@ -299,16 +267,7 @@ class ForcesAccumulator(BlockAccumulator):
             return "Taylor-Couette"
         return f"approximate: Taylor-Couette; cells at this radius take {30 / gap.inner:.2g} % off"
 
-    def slope(self) -> Array:
-        """Of the mean superficial velocity along the flow, by the numbers in a sample."""
-        size = int(np.prod(self.shape))
-        slope = np.zeros(size + self.dimension)
-        rho = setting.mass_density(self.case)
-        slope[size + self.along()] = 1.0 / (rho * np.prod(self.case.box.size))
-        return slope
-
     def along(self) -> int:
-        """Number of the axis of the drag."""
         given = self.observable.flow
         flow = setting.driven_axis(self.case) if given is None else AXES.index(given)
         assert flow is not None  # as `check` has seen
@@ -326,22 +285,23 @@ class ForcesAccumulator(BlockAccumulator):
 
         The error is that of blocks of time, whatever the momentum of all solids together does.
         """
-        slope = self.slope()
-        value, error = of_mean(self.blocks).scalar(slope @ self.blocks.mean(), slope)
+        slope, rho = np.zeros(self.blocks.shape), setting.mass_density(self.case)
+        slope[np.prod(self.shape) + self.along()] = 1.0 / (rho * np.prod(self.case.box.size))
+        value, error = of_mean(self.blocks).total(slope)
         memory = self.flow_memory(self.along())
         return value, max(error, memory.least * float(slope.max())), memory.note
 
     def flow_memory(self, axis: int) -> FlowMemory:
-        """How long the run is beside the memory of the flow along an axis."""
         momentum = float(self.blocks.mean()[int(np.prod(self.shape)) + axis])
         return flow_memory(self.case, axis, momentum, self.blocks, self.observable.every)
 
     def build_up(self) -> BuildUp | None:
-        """How the flow came from rest, where a uniform force drives it along one axis."""
         axis = setting.driven_axis(self.case)
         return None if axis is None else build_up_of(self.flow_memory(axis), self.case)
 
-    def coefficients(self, mean: Estimate, force: NDArray[np.intp], few: bool) -> list[Comparison]:
+    def coefficients(
+        self, mean: Estimate, force: NDArray[np.intp], few: bool
+    ) -> Iterator[Comparison]:
         """Reynolds number, drag and lift, with the error of the speed where that is measured."""
         given, flow = self.observable, self.along()
         assert given.length is not None
@@ -349,26 +309,23 @@ class ForcesAccumulator(BlockAccumulator):
         note = f"U = {with_error(abs(speed), spread)} a/tau, the mean superficial velocity"
         if given.speed is not None:
             speed, spread, note = given.speed, 0.0, f"U = {given.speed:g} a/tau"
-        note = "; ".join(filter(None, (note, short)))
+        note = joined(note, short)
         if speed == 0:
-            return []
-        transport, found = setting.transport(self.case), []
+            return
+        transport = setting.transport(self.case)
         if transport is not None:
             inverse = given.length / transport.viscosity
-            found.append(
-                Comparison("Reynolds number", abs(speed) * inverse, spread * inverse, note=note)
-            )
+            yield Comparison("Reynolds number", abs(speed) * inverse, spread * inverse, note=note)
         scale, part = self.scale(speed), spread / abs(speed)
         for body in self.obstacles() if few else ():
             for axis in (flow, *(k for k in range(self.dimension) if k != flow)):
                 one: Array = np.zeros(mean.value.shape)
                 one[force[body, axis]] = scale
-                value, error = mean.scalar(one @ mean.value, one)
+                value, error = mean.total(one)
                 error = float(np.hypot(error, 2 * part * value))  # the coefficient goes as 1/U^2
                 if part > 1 / SURE:  # U may be zero
                     value = error = np.nan
                 kind = "drag coefficient" if axis == flow else "lift coefficient"
                 where = f" along {AXES[axis]}" if self.dimension == 3 and axis != flow else ""
                 what = f"{kind} of {self.bodies[body]}{where}"
-                found.append(Comparison(what, value, error, note=noted(value, note)))
-        return found
+                yield Comparison(what, value, error, note=noted(value, note))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from collections.abc import Iterator
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.observe.shared.decay import fit_curve, normalised
@@ -14,9 +14,6 @@ from mesokit.method.mpcd.observe.shared.modes import SHOWN, Array, Modes, ModesA
 from mesokit.observe.shared.fitted import fitted_number
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Comparison, Result
-
-if TYPE_CHECKING:
-    pass
 
 FIRST = 3  # steps left out of the fit, as for transverse modes
 LONGEST = 2.5  # periods that the fit looks at
@@ -31,10 +28,12 @@ class LongitudinalModes(Modes):
 
     quantity: Literal["longitudinal-modes"] = tag("longitudinal-modes")
     asks_transport: ClassVar[bool] = True
+    drawing = "modes"
+    value_label = "longitudinal mode correlation"
+    units: ClassVar[dict[str, str]] = {"time": "tau", "wavenumber": "1/a"}
 
 
 def ringing(time: Array, damping: float, frequency: float, amplitude: float, sine: float) -> Array:
-    """A damped oscillation."""
     wave = amplitude * np.cos(frequency * time) + sine * np.sin(frequency * time)
     return np.asarray(np.exp(-damping * time) * wave)
 
@@ -44,32 +43,12 @@ class LongitudinalModesAccumulator(ModesAccumulator):
     """Correlators of the momentum along each wave vector."""
 
     def polarise(self, wavevector: Array) -> Array:
-        """Along it."""
         return (wavevector / np.linalg.norm(wavevector))[None]
 
     def result(self) -> Result:
-        """The oscillation for each wave number, sound speed and attenuation from each."""
-        time, value, error = self.curves()
-        coefficients = setting.transport(self.case) if self.undisturbed() else None
-        first = self.equipartition() if self.undisturbed() else None
-        return Result(
-            quantity="longitudinal-modes",
-            drawing="modes",
-            name=self.name,
-            x={"time": time, "wavenumber": self.wavenumbers},
-            value=value,
-            error=error,
-            label="longitudinal mode correlation",
-            units={"value": "", "time": "tau", "wavenumber": "1/a"},
-            expected=self.law(time),
-            theory="damped sound",
-            comparisons=tuple([c for c in [*self.fits(coefficients), first] if c]),
-            samples=self.shells[0].correlator.count,
-            extra=self.smooth(time),
-        )
+        return self.modes(self.fits(), "damped sound")
 
     def law(self, time: Array) -> Array | None:
-        """The damped oscillation of `sound`."""
         coefficients = setting.transport(self.case) if self.undisturbed() else None
         if coefficients is None or coefficients.sound_attenuation is None:
             return None
@@ -88,13 +67,13 @@ class LongitudinalModesAccumulator(ModesAccumulator):
         wave = np.cos(frequency * time) - damping / frequency * np.sin(frequency * time)
         return np.asarray(np.real(np.exp(-damping * time) * wave))
 
-    def fits(self, coefficients: theory.Transport | None) -> list[Comparison]:
+    def fits(self) -> Iterator[Comparison]:
         """Sound speed and attenuation for each of the smallest wave numbers."""
+        coefficients = setting.transport(self.case) if self.undisturbed() else None
         guess = coefficients.sound_speed if coefficients else self.case.fluid.kT**0.5
         damped = coefficients.sound_attenuation if coefficients else None
         known = damped if damped is not None else np.nan
-        found = []
-        for k, _, correlator in self.shells[:SHOWN]:
+        for k, correlator in self.shells[:SHOWN]:
             lags, curve = normalised(correlator)
             time = lags * self.interval()
             start_damping = (damped or 0.5) * k * k / 2
@@ -109,14 +88,9 @@ class LongitudinalModesAccumulator(ModesAccumulator):
             value, error = fitted.scalar(total / k, slope)
             expected = coefficients.sound_speed if coefficients else np.nan
             at = f"at k = {k:.4g}/a"
-            runs = self.shells[0].correlator.series
             # c^2 is proportional to the kT that this run started with
-            error = 0.5 * setting.with_start(self.case, 2 * error, value, runs)
+            error = 0.5 * setting.with_start(self.case, 2 * error, value, correlator.series)
             note = setting.caveat(self.case)
-            what = f"sound speed {at}"
-            found.append(fitted_number(what, value, error, expected, "a/tau", note))
-            slope = np.array([2 / k**2, 0, 0, 0])
-            value, error = fitted.scalar(2 * damping / k**2, slope)
-            what = f"sound attenuation {at}"
-            found.append(fitted_number(what, value, error, known, "a^2/tau", note))
-        return found
+            yield fitted_number(f"sound speed {at}", value, error, expected, "a/tau", note)
+            found = fitted.scalar(2 * damping / k**2, np.array([2 / k**2, 0, 0, 0]))
+            yield fitted_number(f"sound attenuation {at}", *found, known, "a^2/tau", note)

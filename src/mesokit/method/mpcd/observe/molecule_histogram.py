@@ -1,8 +1,8 @@
-"""How a number of molecules is distributed: size, ends, orientation, place of the centre."""
+"""Distribution of a number of molecules: size, ends, orientation, place of the centre."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -18,11 +18,11 @@ from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, mean_shape, stretched, undisturbed
 from mesokit.method.mpcd.expected.molecules import ends_at_rest, free_bond, modes_at_rest
 from mesokit.method.mpcd.expected.selection import KIND, group_of, molecule_of
-from mesokit.method.mpcd.expected.traps import held, trapped
+from mesokit.method.mpcd.expected.traps import held, squares_from_middle, trapped
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.observable import BlockAccumulator, Observable, State, accumulator_of
+from mesokit.seam.result import Array, Comparison, Result, joined
 
 FINE = 480  # bins in memory; those of a result are of several
 DIVISORS = tuple(n for n in range(1, FINE + 1) if FINE % n == 0)
@@ -40,6 +40,8 @@ class MoleculeHistogram(Observable):
 
     quantity: Literal["molecule-histogram"] = tag("molecule-histogram")
     needs_fluid: ClassVar[bool] = False
+    drawing = "histogram"
+    value_label = "probability density"
     of: Literal["gyration", "end-to-end", "orientation", "centre"] = param(
         "gyration",
         doc="radius of gyration; of chains the end-to-end distance (with `axis` its component), "
@@ -80,23 +82,19 @@ class MoleculeHistogram(Observable):
             raise CaseError(f"length: no effect with of = {self.of!r}; only with of = 'centre'")
         if self.largest is not None and self.of not in ("gyration", "end-to-end"):
             raise CaseError(f"largest: no effect with of = {self.of!r}; leave it out")
-        if self.of == "centre" and self.axis_of(case) == 0 and case.box.sheared:
+        if self.of == "centre" and flow_axis(case, self.axis) == 0 and case.box.sheared:
             raise CaseError("of = 'centre': not along 'x' under shear, whose images slide")
-
-    def axis_of(self, case: Case) -> int:
-        """Number of the axis."""
-        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
 
 
 @accumulator_of(MoleculeHistogram)
-class MoleculeHistogramAccumulator:
+class MoleculeHistogramAccumulator(BlockAccumulator):
     """Shares of the molecules in fine bins."""
 
-    def __init__(self, observable: MoleculeHistogram, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.group = group_of(case, "beads", observable.kind)
         self.beads = self.group.beads(observable.molecules)
-        self.axis, self.dimension = observable.axis_of(case), case.box.dimension
+        self.axis, self.dimension = flow_axis(case, observable.axis), case.box.dimension
         self.mean = mean_shape(case, observable.kind, self.group)
         self.edges = np.linspace(*self.limits(), FINE + 1)
         self.means = MeansOverMolecules(len(self.beads), FINE)
@@ -132,7 +130,7 @@ class MoleculeHistogramAccumulator:
         self.means.add(each)
 
     def numbers(self, fluid: RunningFluid) -> Array:
-        """What is counted, (molecules,)."""
+        """The number of each molecule that is counted, (molecules,)."""
         of, ids = self.observable.of, self.beads.ravel()
         shape = (*self.beads.shape, self.dimension)
         if of == "centre":
@@ -157,11 +155,9 @@ class MoleculeHistogramAccumulator:
         self.means.restore(state)
 
     def pool(self, other: MoleculeHistogramAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
         self.means.pool(other.means)
 
     def result(self) -> Result:
-        """The density over what was found, in so many bins, and the mean."""
         first, last, many = self.coarse()
         edges = self.edges[first : last + 1 : many]
         combine = np.zeros((len(edges) - 1, FINE))
@@ -174,18 +170,17 @@ class MoleculeHistogramAccumulator:
         )
         name = f"R{AXES[self.axis]}" if self.component else name
         unit = "" if name == "cosine" else "a"
-        return Result(
-            quantity="molecule-histogram",
-            drawing="histogram",
-            name=self.name,
-            x={name: (edges[1:] + edges[:-1]) / 2},
-            value=self.means.mean(combine),
-            error=self.means.error(combine),
-            label="probability density",
+        law = "ideal molecules"
+        if self.observable.of == "centre":
+            in_traps = trapped(self.case, self.observable.kind)
+            law = "Boltzmann in traps" if in_traps else "anywhere alike"
+        return self.report(
+            {name: (edges[1:] + edges[:-1]) / 2},
+            (self.means.mean(combine), self.means.error(combine)),
+            self.comparisons(known),
             units={"value": "1/a" if unit else "", name: unit},
             expected=None if expected is None else expected / (edges[1] - edges[0]),
-            theory=self.legend(),
-            comparisons=tuple(self.comparisons(known)) if self.means.blocks.count else (),
+            theory=law,
             samples=self.means.blocks.count,
             extra={"edges": edges, "of": self.words()},
         )
@@ -193,28 +188,17 @@ class MoleculeHistogramAccumulator:
     def spread(self, share: Array) -> Comparison:
         """Mean square distance from the expected middle, by the shorter way round the box."""
         length, middle = self.edges[-1], (self.edges[1:] + self.edges[:-1]) / 2
-        turns = np.angle(share @ np.exp(2j * np.pi * middle / length))
-        away = middle - turns * length / (2 * np.pi)
-        square = ((away - length * np.rint(away / length)) ** 2)[None]
-        value, error = float(self.means.mean(square)[0]), float(self.means.error(square)[0])
+        square = squares_from_middle(middle, share, length)
         what = f"mean square distance from the middle of the traps along {AXES[self.axis]}"
-        expected, note = float(square[0] @ share), self.means.caution()
-        return Comparison(what, value, error, expected, "a^2", note)
+        expected, note = float(square @ share), self.means.caution()
+        return Comparison(what, *self.means.total(square), expected, "a^2", note)
 
     def words(self) -> str:
-        """What is counted."""
         words, axis = WORDS[self.observable.of], AXES[self.axis]
         if self.component:
             return f"end-to-end vector along {axis}"
         against = {"orientation": f" against {axis}", "centre": f" along {axis}"}
         return words + against.get(self.observable.of, "")
-
-    def legend(self) -> str:
-        """What the theory is called in a figure."""
-        if self.observable.of != "centre":
-            return "ideal molecules"
-        in_traps = trapped(self.case, self.observable.kind)
-        return "Boltzmann in traps" if in_traps else "anywhere alike"
 
     def coarse(self) -> tuple[int, int, int]:
         """First and last fine edge of the result, and fine bins in each of its bins."""
@@ -228,7 +212,7 @@ class MoleculeHistogramAccumulator:
         return int(first), int(last), many
 
     def cdf(self, edges: Array) -> Array | None:
-        """What theory expects below each edge; None where there is none."""
+        """Expected share below each edge; None without a theory."""
         of, case, kind = self.observable.of, self.case, self.observable.kind
         molecule, d = self.group.molecule, self.dimension
         assert molecule is not None
@@ -269,18 +253,19 @@ class MoleculeHistogramAccumulator:
         )
         return np.concatenate([[0.0], np.cumsum(share)])
 
-    def comparisons(self, known: Array | None) -> list[Comparison]:
+    def comparisons(self, known: Array | None) -> Iterator[Comparison]:
         """The mean, by the middles of the fine bins, as theory is taken too; of centres in traps
         the mean square distance from where they are in the mean."""
         if self.observable.of == "centre":
             if known is None or not trapped(self.case, self.observable.kind):
-                return []
-            return [self.spread(np.diff(known))]
-        middle = ((self.edges[1:] + self.edges[:-1]) / 2)[None]
-        value, error = float(self.means.mean(middle)[0]), float(self.means.error(middle)[0])
-        expected = np.nan if known is None else float(middle[0] @ np.diff(known))
+                return
+            yield self.spread(np.diff(known))
+            return
+        middle = (self.edges[1:] + self.edges[:-1]) / 2
+        expected = np.nan if known is None else float(middle @ np.diff(known))
         outside = 1 - float(self.means.mean().sum())
         left = f"{100 * outside:.2g} % larger than largest are left out" if outside > 1e-9 else ""
-        note = "; ".join(filter(None, (left, self.means.caution())))
+        note = joined(left, self.means.caution())
         unit = "" if self.observable.of == "orientation" else "a"
-        return [Comparison(f"mean {self.words()}", value, error, expected, unit, note)]
+        what, found = f"mean {self.words()}", self.means.total(middle)
+        yield Comparison(what, *found, expected, unit, note)

@@ -1,5 +1,6 @@
-"""How large molecules are: gyration tensor and, of chains, the end-to-end vector."""
+"""Size of molecules: gyration tensor and, of chains, the end-to-end vector."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -10,7 +11,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.ideal import mean_shape
 from mesokit.method.mpcd.expected.molecules import ends_at_rest, free_bond, gyration, modes_at_rest
 from mesokit.method.mpcd.expected.selection import KIND, beads_of, group_of, molecule_of
-from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
+from mesokit.method.mpcd.observe.shared.tensor import MoleculeTensorAccumulator
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
@@ -24,6 +25,9 @@ class MoleculeSize(Observable):
 
     quantity: Literal["molecule-size"] = tag("molecule-size")
     needs_fluid: ClassVar[bool] = False
+    drawing = "tensor"
+    value_label = "size of molecules"
+    units: ClassVar[dict[str, str]] = {"value": "a^2"}
     molecules: int = param(2000, doc="molecules looked at", ge=1)
     kind: int | str = param(1, doc=KIND)
 
@@ -36,11 +40,11 @@ class MoleculeSize(Observable):
 class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
     """Block averages of the tensors."""
 
-    def __init__(self, observable: MoleculeSize, case: Case) -> None:
-        self.molecule = molecule_of(case, observable.quantity, observable.kind)
-        parts = PARTS if self.molecule.topology == "chain" else PARTS[:1]
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
+        chain = molecule_of(case, kind=observable.kind).topology == "chain"
         self.beads = beads_of(case, observable.molecules, observable.kind)
-        super().__init__(observable, case, parts, observable.kind, len(self.beads))
+        self.prepare_for(PARTS if chain else PARTS[:1], len(self.beads))
 
     def observe(self, fluid: RunningFluid) -> None:
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
@@ -63,8 +67,7 @@ class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
         return mode * (np.arange(len(mode)) % 2 == 0) if part else mode
 
     def result(self) -> Result:
-        """Tensors and their traces."""
-        return self.tensors("molecule-size", "size of molecules", "a^2", "ideal molecules")
+        return self.tensors("ideal molecules")
 
     def expected(self) -> Array:
         """Tensors: isotropic, and what pulls add; nan where there is no theory."""
@@ -79,10 +82,7 @@ class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
             added.append(np.outer(mean[-1] - mean[0], mean[-1] - mean[0]))
         return np.array(squares)[:, None, None] / d * np.eye(d) + np.array(added)
 
-    def comparisons(self) -> list[Comparison]:
-        """Mean squares of radius of gyration and end-to-end distance."""
+    def comparisons(self) -> Iterator[Comparison]:
         names = ("mean square radius of gyration", "mean square end-to-end distance")
-        return [
-            Comparison(names[part], *self.size(part), expected, "a^2", self.short_run())
-            for part, expected in enumerate(np.trace(self.expected(), axis1=1, axis2=2).tolist())
-        ]
+        for part, expected in enumerate(np.trace(self.expected(), axis1=1, axis2=2).tolist()):
+            yield Comparison(names[part], *self.size(part), expected, "a^2", self.short_run())

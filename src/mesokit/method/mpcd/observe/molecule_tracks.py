@@ -13,7 +13,7 @@ from mesokit.method.mpcd.expected.selection import KIND, group_of, molecule_of
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Comparison, Result, joined
 from mesokit.statistics import TimeSeries
 
 NUMBERS = 2**20  # of the time series, for all molecules together
@@ -32,6 +32,8 @@ class MoleculeTracks(Observable):
 
     quantity: Literal["molecule-tracks"] = tag("molecule-tracks")
     needs_fluid: ClassVar[bool] = False
+    drawing = "tracks"
+    value_label = "molecules in time"
     molecules: int = param(20, doc="molecules followed, evenly spread over all", ge=1, le=10_000)
     kind: int | str = param(1, doc=KIND)
     axis: Axis | None = param(
@@ -45,7 +47,6 @@ class MoleculeTracks(Observable):
             case.box.index(self.axis)
 
     def warnings(self, case: Case) -> Iterator[str]:
-        """Say when a run is too long for every sample to be kept."""
         kept = MoleculeTracksAccumulator(self, case)
         samples = case.run.steps // self.every + 1
         if samples > kept.rows:
@@ -62,13 +63,13 @@ class MoleculeTracksAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("series", "means")
 
-    def __init__(self, observable: MoleculeTracks, case: Case) -> None:
-        self.case, self.name, self.kind = case, observable.label, observable.kind
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
+        self.kind = observable.kind
         self.group = group_of(case, "beads", observable.kind)
         self.beads = self.group.beads(observable.molecules)
         self.number, self.dimension = len(self.beads), case.box.dimension
-        axis = observable.axis
-        self.axis = flow_axis(case) if axis is None else case.box.index(axis)
+        self.axis = flow_axis(case, observable.axis)
         molecule = self.group.molecule
         self.chain = molecule is not None and molecule.topology == "chain"
         width = self.number * len(self.components)
@@ -79,7 +80,6 @@ class MoleculeTracksAccumulator(BlockAccumulator):
 
     @property
     def components(self) -> list[str]:
-        """What is known of a molecule at a time."""
         axes = AXES[: self.dimension]
         ends = ["end-to-end", *(f"R{a}" for a in axes), "orientation"] if self.chain else []
         return ["gyration", *ends, *axes, *(f"v{a}" for a in axes)]
@@ -106,26 +106,20 @@ class MoleculeTracksAccumulator(BlockAccumulator):
         self.means.add(np.stack([gyration, square, aligned, *velocity.T], axis=1))
 
     def result(self) -> Result:
-        """The series of every molecule; a sample has no error bar: nan."""
         names = self.components
         value = self.series.values().reshape(-1, self.number, len(names))
         units = dict.fromkeys(names, "a") | {"orientation": ""}
         units |= {f"v{a}": "a/tau" for a in AXES}
         sizes = ideal_sizes(self.case, self.kind, self.group)
-        return Result(
-            quantity="molecule-tracks",
-            drawing="tracks",
-            name=self.name,
-            x={
+        return self.report(
+            {
                 "time": self.series.time(),
                 "molecule": 1 + (self.beads[:, 0] - self.group.first) // self.group.length,
-                "component": np.array(names),
+                "component": names,
             },
-            value=value,
-            error=np.full(value.shape, np.nan),
-            label="molecules in time",
+            value,
+            self.comparisons(*sizes),
             units={"value": "", "time": "tau", "molecule": ""} | {n: units[n] for n in names},
-            comparisons=tuple(self.comparisons(*sizes)) if self.means.blocks.count else (),
             samples=self.means.blocks.count,
             extra={
                 "axis": AXES[self.axis],
@@ -136,24 +130,19 @@ class MoleculeTracksAccumulator(BlockAccumulator):
         )
 
     def comparisons(self, gyration: float, ends: float) -> Iterator[Comparison]:
-        """Mean squares of size, orientation, velocity."""
         mean, error = self.means.mean().tolist(), self.means.error().tolist()
-        yield Comparison(
-            "mean square radius of gyration", mean[0], error[0], gyration, "a^2", self.note()
-        )
-        rest = 0.0 if undisturbed(self.case) else np.nan
+        rest, note = 0.0 if undisturbed(self.case) else np.nan, self.note()
+        rows = [("mean square radius of gyration", 0, gyration, "a^2")]
         if self.chain:
-            yield Comparison(
-                "mean square end-to-end distance", mean[1], error[1], ends, "a^2", self.note()
-            )
-            what = f"orientation along {AXES[self.axis]}"
-            yield Comparison(what, mean[2], error[2], rest, note=self.note())
+            rows.append(("mean square end-to-end distance", 1, ends, "a^2"))
+            rows.append((f"orientation along {AXES[self.axis]}", 2, rest, ""))
         for k in range(self.dimension):
-            what = f"velocity of centres along {AXES[k]}"
-            yield Comparison(what, mean[3 + k], error[3 + k], rest, "a/tau", self.note())
+            rows.append((f"velocity of centres along {AXES[k]}", 3 + k, rest, "a/tau"))
+        for what, k, known, unit in rows:
+            yield Comparison(what, mean[k], error[k], known, unit, note)
 
     def note(self) -> str:
-        """How many molecules are behind an error bar, where they are few."""
+        """Number of molecules behind an error bar, where they are few."""
         few = self.number < self.group.number
         words = f"of {self.number} of {self.group.number} molecules" if few else ""
-        return "; ".join(filter(None, (words, self.means.caution())))
+        return joined(words, self.means.caution())

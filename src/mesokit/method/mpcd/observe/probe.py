@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
+import itertools
 import math
-from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from collections.abc import Iterator, Sequence
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
+from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
@@ -16,8 +19,8 @@ from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.observe.shared.swing import Series, amplitudes, in_slit
-from mesokit.method.mpcd.observe.shared.swing import comparisons as swings
+from mesokit.method.mpcd.field.protocol import Swing
+from mesokit.method.mpcd.observe.shared.shells import nearest, periodic_lengths
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
@@ -32,6 +35,9 @@ from mesokit.statistics import (
 )
 
 ROWS = 16384  # of the time series
+LEAST = 8  # samples in a period: with fewer a cosine is not seen
+BEYOND = 3.0  # standard errors below which nothing swings, and no phase is known
+DRAWN = 64  # places at which theory is averaged over the small box
 
 
 @component
@@ -45,6 +51,13 @@ class Probe(Observable):
     """
 
     quantity: Literal["probe"] = tag("probe")
+    drawing = "signal"
+    units: ClassVar[dict[str, str]] = {
+        "value": "a^2/tau",
+        "frequency": "1/tau",
+        "velocity": "a/tau",
+        "time": "tau",
+    }
     centre: Either[None, float] = param(
         None,
         doc="middle of the small box (that of the box unless said); what sticks out of a periodic "
@@ -71,22 +84,7 @@ class Probe(Observable):
             0 < side <= length for side, length in zip(self.size, case.box.size, strict=True)
         ):
             raise CaseError(f"size = {show(self.size)}: expected lengths that fit the box")
-        self._require_between_plates(case)
-        if self.component is not None:
-            case.box.index(self.component, "component")
-        if (self.speed is None) != (self.length is None):
-            lone, other = ("speed", "length") if self.length is None else ("length", "speed")
-            raise CaseError(f"{lone}: no effect without {other}; give both or neither")
-        if case.walls and solids_of(case).distance(self.place(case))[0] <= 0:
-            raise CaseError(f"centre = {show(self.place(case))}: lies in a solid")
-
-    def warnings(self, case: Case) -> Iterator[str]:
-        """A component along which nothing flows."""
-        yield from setting.across_the_flow(case, self.component)
-
-    def _require_between_plates(self, case: Case) -> None:
-        """Raise CaseError for a small box that reaches over a plate."""
-        place, sides = self.place(case), self.size or (2.0,) * case.box.dimension
+        place, sides = self.place(case), self.size or (2.0,) * d
         for axis in setting.closed_axes(case):
             half = 0.5 * sides[axis] - 1e-9
             if not half <= place[axis] <= case.box.size[axis] - half:
@@ -94,6 +92,16 @@ class Probe(Observable):
                     f"centre = {show(place)}: with sides {show(sides)} it reaches over a plate "
                     f"along {AXES[axis]}"
                 )
+        if self.component is not None:
+            case.box.index(self.component, "component")
+        if (self.speed is None) != (self.length is None):
+            lone, other = ("speed", "length") if self.length is None else ("length", "speed")
+            raise CaseError(f"{lone}: no effect without {other}; give both or neither")
+        if case.walls and solids_of(case).distance(place)[0] <= 0:
+            raise CaseError(f"centre = {show(place)}: lies in a solid")
+
+    def warnings(self, case: Case) -> Iterator[str]:
+        yield from setting.across_the_flow(case, self.component)
 
     def place(self, case: Case) -> tuple[float, ...]:
         """The middle of the small box in this case."""
@@ -113,14 +121,12 @@ class ProbeAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "series", "last")
 
-    def __init__(self, observable: Probe, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.dimension = d = case.box.dimension
         self.centre = np.array(observable.place(case))
         self.half = np.array(observable.size or (2.0,) * d) / 2
-        lengths = np.array(case.box.size, float)
-        shut = [k in setting.closed_axes(case) for k in range(d)]
-        self.lengths = np.where(shut, np.inf, lengths)
+        self.lengths = periodic_lengths(case)
         self.component = observable.seen(case)
         self.blocks, self.series = Blocks((d,)), TimeSeries(d, ROWS)
         self.others: list[TimeSeries] = []  # of runs pooled with it
@@ -136,9 +142,7 @@ class ProbeAccumulator(BlockAccumulator):
         self.series.add(fluid.time, self.last)
 
     def inside(self, some: Some) -> Terms:
-        """Mass and momentum of the particles in the small box."""
-        away = some.positions - self.centre
-        away -= np.where(np.isfinite(self.lengths), self.lengths, 0) * np.round(away / self.lengths)
+        away = nearest(some.positions - self.centre, self.lengths)
         inside = (np.abs(away) <= self.half).all(axis=1)
         m = some.masses[inside]
         return np.zeros(len(m), np.int64), [m, *(m * some.velocities[inside].T)]
@@ -160,25 +164,18 @@ class ProbeAccumulator(BlockAccumulator):
         return [signal[:shortest] for signal in signals], interval
 
     def result(self) -> Result:
-        """The spectrum of one component; the time series of all is in `extra`."""
-        values, letter = self.series.values(), AXES[self.component]
+        letter = AXES[self.component]
         signals, interval = self.signals()
         found = mean_spectrum([spectrum(signal, interval) for signal in signals])
         peak = mean_frequency([dominant_frequency(signal, interval) for signal in signals])
-        return Result(
-            quantity="probe",
-            drawing="signal",
-            name=self.name,
-            x={"frequency": found.frequency},
-            value=found.power,
-            error=found.error,
+        return self.report(
+            {"frequency": found.frequency},
+            (found.power, found.error),
+            self.comparisons(peak),
             label=f"power of v_{letter} per frequency",
-            units={"value": "a^2/tau", "frequency": "1/tau", "velocity": "a/tau", "time": "tau"},
-            comparisons=tuple(self.comparisons(peak)) if self.blocks.count else (),
-            samples=self.blocks.count,
             extra={
                 "time": self.series.time(),
-                "velocity": values,
+                "velocity": self.series.values(),
                 "component": letter,
                 "dominant": np.nan if peak is None else peak.value,
             },
@@ -202,27 +199,88 @@ class ProbeAccumulator(BlockAccumulator):
             expected = in_slit(self.case, swing, int(k), low, high)
             yield from swings(blocks, swing, AXES[k], expected)
 
-    def comparisons(self, peak: Any) -> list[Comparison]:
-        """Mean velocity, dominant frequency, Strouhal number."""
+    def comparisons(self, peak: Any) -> Iterator[Comparison]:
         mean: Any = of_mean(self.blocks)
-        value: Array = mean.value
-        found = [
-            Comparison(f"mean velocity v_{letter}", float(value[k]), float(mean.error[k]),
-                       unit="a/tau")
-            for k, letter in enumerate(AXES[: self.dimension])
-        ]  # fmt: skip
-        found += self.with_force()
+        for k, letter in enumerate(AXES[: self.dimension]):
+            speed = mean.value[k], mean.error[k]
+            yield Comparison(f"mean velocity v_{letter}", *speed, unit="a/tau")
+        yield from self.with_force()
         if peak is None:
-            return found
+            return
         note = f"peak {two_digits(peak.contrast)} times the power around it"
-        found.append(
-            Comparison("dominant frequency", peak.value, peak.error, unit="1/tau", note=note)
-        )
+        yield Comparison("dominant frequency", peak.value, peak.error, unit="1/tau", note=note)
         given = self.observable
         if given.speed is not None and given.length is not None:
-            scale = given.length / given.speed
-            note = f"U = {given.speed:g} a/tau"
-            found.append(
-                Comparison("Strouhal number", scale * peak.value, scale * peak.error, note=note)
-            )
-        return found
+            scale, note = given.length / given.speed, f"U = {given.speed:g} a/tau"
+            yield Comparison("Strouhal number", scale * peak.value, scale * peak.error, note=note)
+
+
+class Series(NamedTuple):
+    """Velocities (n,) of one run, the time of the first, and the interval; each is the mean over
+    `stride` samples."""
+
+    values: Array
+    begun: float
+    interval: float
+    stride: int
+
+
+def amplitudes(series: Sequence[Series], frequency: float) -> Blocks:
+    """Of cos(w t) and sin(w t) in each whole period, (2,).
+
+    >>> t = 0.1 * np.arange(640)
+    >>> found = amplitudes([Series(3 * np.cos(0.5 * t - 1), 0.0, 0.1, 1)], 0.5)
+    >>> found.count, (found.mean() / [np.cos(1), np.sin(1)]).round(6).tolist()
+    (5, [3.0, 3.0])
+    """
+    blocks = Blocks((2,))
+    for values, begun, interval, stride in series:
+        period = 2 * np.pi / (frequency * interval)  # in samples
+        if period < LEAST:
+            continue
+        half = frequency * interval / 2
+        weaker = np.sin(half) / (stride * np.sin(half / stride))  # by the mean over a stride
+        edges = np.rint(period * np.arange(len(values) // period + 1)).astype(int)
+        for first, last in itertools.pairwise(edges):
+            angle = frequency * (begun + interval * np.arange(first, last))
+            basis = np.stack([np.cos(angle), np.sin(angle), np.ones_like(angle)], axis=1)
+            found, *_ = np.linalg.lstsq(basis, values[first:last], rcond=None)
+            blocks.add(found[:2] / weaker)
+    return blocks
+
+
+def swings(
+    blocks: Blocks, swing: Swing, along: str, expected: complex | None
+) -> Iterator[Comparison]:
+    """Amplitude, and lag behind the force, beside the complex amplitude of theory."""
+    if not blocks.count:
+        return
+    mean = of_mean(blocks)
+    a, b = mean.value
+    size = float(np.hypot(a, b))
+    wanted = complex(np.nan, np.nan) if expected is None else expected
+    note = "" if expected is None else "no slip at the plates"
+    value, error = mean.scalar(size, mean.value / size)
+    what = f"amplitude of v_{along} with the force"
+    yield Comparison(what, value, error, abs(wanted), "a/tau", note)
+    if size > BEYOND * error:
+        lag = np.degrees(swing.phase - np.arctan2(-b, a))
+        theirs = float(-np.angle(wanted, deg=True))
+        lag = (lag - np.nan_to_num(theirs) + 180) % 360 - 180 + np.nan_to_num(theirs)
+        value, error = mean.scalar(lag, np.degrees(np.array([-b, a])) / size**2)
+        what = f"lag of v_{along} behind the force"
+        yield Comparison(what, value, error, theirs, "degrees", note)
+
+
+def in_slit(case: Case, swing: Swing, component: int, low: Array, high: Array) -> complex | None:
+    """Complex amplitude of theory between two places, for a slit that the force would drive
+    steadily with no slip; None for other cases."""
+    steady = dataclasses.replace(case, fluid=dataclasses.replace(case.fluid, force=swing.of))
+    flow, known = setting.flow(steady, component), setting.transport(case)
+    if flow.kind != "poiseuille" or known is None or flow.profile is None:
+        return None
+    height = float(case.box.size[flow.across])
+    acceleration = setting.uniform_acceleration(steady)[component]
+    places = np.linspace(low[flow.across], high[flow.across], 2 * DRAWN + 1)[1::2]
+    chi = theory.oscillating_slit_response(places, height, known.viscosity, swing.frequency)
+    return complex(acceleration * chi.mean())

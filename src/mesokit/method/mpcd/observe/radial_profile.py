@@ -17,13 +17,14 @@ from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.observe.shared.shells import (
     Array,
     ShellAccumulator,
-    shell_edges,
+    nearest,
+    periodic_lengths,
     shell_volumes,
 )
 from mesokit.observe.shared.short_run import ENOUGH_FOR_CURVATURE, of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.observable import Observable, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Comparison, Result, joined
 
 COMPONENTS = ("radial", "azimuthal", "axial")
 UNITS = {"density": "1/a^d", "temperature": "m a^2/tau^2"}
@@ -42,6 +43,7 @@ class RadialProfile(Observable):
     quantity: Literal["radial-profile"] = tag("radial-profile")
     asks_transport: ClassVar[bool] = True
     of_built_up_flow: ClassVar[bool] = True
+    drawing = "profile"
     of: Literal["azimuthal", "axial", "radial", "density", "temperature"] = param(
         "azimuthal", doc="what: a velocity component, 'density' or 'temperature'"
     )
@@ -70,39 +72,32 @@ class RadialProfile(Observable):
 class RadialProfileAccumulator(ShellAccumulator):
     """Sums in rings; velocities are radial, azimuthal and, in 3D, axial."""
 
-    def __init__(self, observable: RadialProfile, case: Case) -> None:
-        self.observable, self.name = observable, observable.label
-        self.flow = round_flow(case)
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
+        self.flow = RoundFlow(case)
         self.axis = AXES.index(observable.axis) if observable.axis else self.flow.axis
-        d, size = case.box.dimension, np.array(case.box.size, float)
         self.plane = [k % 3 for k in (self.axis + 1, self.axis + 2)]
-        centre = observable.centre or self.flow.centre
-        self.centre = np.array(centre)[self.plane]
+        self.centre = np.array(observable.centre or self.flow.centre)[self.plane]
         self.known = self.axis == self.flow.axis and np.allclose(
             self.centre, np.array(self.flow.centre)[self.plane]
         )
-        lengths = size[self.plane]
-        open_axes = [k not in setting.closed_axes(case) for k in self.plane]
-        self.lengths = np.where(open_axes, lengths, np.inf)
+        lengths = np.array(case.box.size, float)[self.plane]
+        self.lengths = periodic_lengths(case)[self.plane]
         inner, outer = self.flow.radii if self.known else (0.0, np.inf)
         inner, outer = observable.radii or (inner, min(outer, lengths.min() / 2))
-        super().__init__(case, shell_edges(inner, outer, observable.bins_per_cell), d)
+        self.prepare_shells(inner, outer)
 
     def locate(self, r: Array) -> tuple[Array, Array]:
-        """Distance from the axis, and the way from it to the nearest image."""
-        arm = r[:, self.plane] - self.centre
-        arm -= np.where(np.isfinite(self.lengths), self.lengths, 0.0) * np.round(arm / self.lengths)
+        arm = nearest(r[:, self.plane] - self.centre, self.lengths)
         return np.hypot(arm[:, 0], arm[:, 1]), arm
 
     def along(self, place: Array, v: Array) -> Array:
-        """Radial, azimuthal and axial velocity."""
         out = (place / np.maximum(np.hypot(*place.T), 1e-12)[:, None]).T
         first, second = v[:, self.plane[0]], v[:, self.plane[1]]
         turned = [out[0] * first + out[1] * second, out[0] * second - out[1] * first]
         return np.stack(turned + ([v[:, self.axis]] if self.dimension == 3 else []))
 
     def result(self) -> Result:
-        """The profile, what is expected of it, and the fit that suits it."""
         of, expected, curve = self.observable.of, self.expected(), None
         found: list[Comparison] = []
         kind = self.flow.kind if self.known else "rest"
@@ -116,29 +111,21 @@ class RadialProfileAccumulator(ShellAccumulator):
             if of == self.flow.component and self.known and kind in FITS:
                 curve, found = FITS[kind](self, value)
             if of == "temperature":
-                found = self.mean_temperature(value)
+                found = [self.mean_temperature(value)]
             if not self.approximate():
                 found += self.chi_square(value, expected, "against theory")
-        return Result(
-            quantity="radial-profile",
-            drawing="profile",
-            name=self.name,
-            x={"r": self.centres},
-            value=value.value,
-            error=value.error,
+        unit = UNITS.get(of, "a/tau").replace("1/a^d", self.case.box.density_unit)
+        return self.report(
+            {"r": self.centres},
+            value,
+            found,
             label=label,
-            units={"value": self.unit(of), "r": "a"},
+            units={"value": unit, "r": "a"},
             expected=expected,
             fit=curve,
             theory=self.flow.name(of) if self.known else "rest",
-            comparisons=tuple(found),
-            samples=self.blocks.count,
             extra={"of": of, "kind": kind, "edges": self.edges},
         )
-
-    def unit(self, of: str) -> str:
-        """Unit of what is measured."""
-        return UNITS.get(of, "a/tau").replace("1/a^d", self.case.box.density_unit)
 
     def approximate(self) -> bool:
         """Whether theory is known to be off by more than an error bar."""
@@ -148,7 +135,6 @@ class RadialProfileAccumulator(ShellAccumulator):
         return uneven and setting.driven(self.case)
 
     def expected(self) -> Array | None:
-        """In each ring; None without a theory."""
         of, fluid, still = self.observable.of, self.case.fluid, not setting.driven(self.case)
         if of == "density":
             pressed = not still and not (self.known and self.flow.profile is not None)
@@ -163,16 +149,16 @@ class RadialProfileAccumulator(ShellAccumulator):
             return np.zeros(self.bins)
         return ring_average(self.flow.profile, self.edges)
 
-    def mean_temperature(self, temperature: Estimate) -> list[Comparison]:
+    def mean_temperature(self, temperature: Estimate) -> Comparison:
         """Of all rings together."""
         weight = self.crowd / self.crowd.sum()
-        value, error = temperature.scalar(weight @ temperature.value, weight)
+        value, error = temperature.total(weight)
         kT = self.case.fluid.kT
         error = setting.with_start(self.case, error, kT, self.blocks.series)
         note = setting.temperature_note(self.case)
         if setting.driven(self.case):
             note = "approximate: shear in the rings and cells adds to it"
-        return [Comparison("mean temperature", value, error, kT, "m a^2/tau^2", note)]
+        return Comparison("mean temperature", value, error, kT, "m a^2/tau^2", note)
 
     @functools.cached_property
     def volumes(self) -> Array:
@@ -208,7 +194,7 @@ class RadialProfileAccumulator(ShellAccumulator):
         return ((self.edges[:-1] >= low - 1e-9) & (self.edges[1:] <= high + 1e-9)) * 1.0
 
     def short_run(self, rate: float) -> str:
-        """Where blocking cannot see the slowest eddies, which decay at this rate: a note."""
+        """Caveat of a run that is short against the decay of the slowest eddies, at this rate."""
         runs, step = self.blocks.series, self.case.fluid.timestep
         time = self.blocks.count / runs * self.observable.every * step
         if not 0 < time * rate < ENOUGH_FOR_CURVATURE:
@@ -258,15 +244,9 @@ class RoundFlow:
             self.round = not case.walls
 
     def name(self, of: str) -> str:
-        """What the expected line is."""
         if of in UNITS:
             return {"density": "ideal gas", "temperature": "kT of the case"}[of]
         return self.kind
-
-
-def round_flow(case: Case) -> RoundFlow:
-    """The flow about an axis in this case."""
-    return RoundFlow(case)
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
@@ -299,13 +279,13 @@ def _couette(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
         coefficients, gap = setting.transport(acc.case), acc.flow.radii[1] - acc.flow.radii[0]
         rate = np.pi**2 * coefficients.viscosity / gap**2 if coefficients else np.inf
         parts = setting.slipping(acc.case), acc.short_run(rate)
-        note = "; ".join(filter(None, parts)) or "fit of A r + B/r"
+        note = joined(*parts) or "fit of A r + B/r"
         both = zip(("inner", "outer"), acc.flow.radii, acc.flow.surfaces, strict=True)
         for name, radius, speed in both:
             gradient = 100 / fastest * np.array([radius, 1 / radius])
-            value, error = line.scalar(gradient @ line.value - 100 * speed / fastest, gradient)
-            what = f"slip at the {name} surface"
-            found.append(Comparison(what, value, error, 0.0, "% of the surface speed", note))
+            slip = line.scalar(gradient @ line.value - 100 * speed / fastest, gradient)
+            what, unit = f"slip at the {name} surface", "% of the surface speed"
+            found.append(Comparison(what, *slip, 0.0, unit, note))
     return basis @ line.value, found
 
 
@@ -313,10 +293,9 @@ def _drum(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     """A r: the rate of rotation."""
     basis = acc.powers(1)
     line = fit(velocity, basis, acc.crowd * acc.inside())
-    value, error = line.scalar(line.value[0], np.ones(1))
-    drum = recognise.drum(acc.case)
+    drum, found = recognise.drum(acc.case), line.total(np.ones(1))
     assert drum is not None  # only such flows are fitted so
-    return basis @ line.value, [Comparison("rate of rotation", value, error, drum.rate, "1/tau")]
+    return basis @ line.value, [Comparison("rate of rotation", *found, drum.rate, "1/tau")]
 
 
 def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
@@ -324,10 +303,8 @@ def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     basis, radius = acc.powers(0, 2), acc.flow.radii[1]
     parabola = fit(velocity, basis, acc.crowd * acc.inside())
     c0, c2 = parabola.value
-    acceleration, coefficients = (
-        setting.uniform_acceleration(acc.case)[acc.axis],
-        setting.transport(acc.case),
-    )
+    acceleration = setting.uniform_acceleration(acc.case)[acc.axis]
+    coefficients = setting.transport(acc.case)
     curved = np.array([0, acceleration / (4 * c2**2)])
     nu, error = parabola.scalar(-acceleration / (4 * c2), curved, over=(c2, np.eye(2)[1]))
     known = coefficients.viscosity if coefficients else np.nan
@@ -335,15 +312,13 @@ def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     short = acc.short_run(5.78 * slowest / radius**2)  # the first zero of J0, squared
     off = setting.caveat(acc.case) or setting.chaos_is_off(acc.case, known, error)
     note = noted(nu, off, short) or "independent of slip"
-    found = [Comparison("viscosity from curvature", nu, error, known, "a^2/tau", note, True)]
+    viscosity = Comparison("viscosity from curvature", nu, error, known, "a^2/tau", note, True)
     share = 1 + radius**2 * c2 / c0
     gradient = np.array([-(radius**2) * c2 / c0**2, radius**2 / c0])
     value, error = parabola.scalar(100 * share, 100 * gradient, over=(c0, np.eye(2)[0]))
     note = noted(value, setting.slipping(acc.case), short) or "no slip"
-    found.append(
-        Comparison("slip at the wall", value, error, 0.0, "% of the centre velocity", note)
-    )
-    return basis @ parabola.value, found
+    slip = Comparison("slip at the wall", value, error, 0.0, "% of the centre velocity", note)
+    return basis @ parabola.value, [viscosity, slip]
 
 
 FITS: dict[str, Callable[[Any, Estimate], Fitted]] = {

@@ -1,4 +1,4 @@
-"""How long molecules stay in a region, or near a solid."""
+"""Times that molecules stay in a region, or near a solid."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal
@@ -16,8 +16,7 @@ from mesokit.geometry.solids.solids import Solids, labels
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.ideal import drift_of
 from mesokit.method.mpcd.expected.selection import KIND, group_of
-from mesokit.method.mpcd.observe.shared.durations import in_parts, ratio
-from mesokit.method.mpcd.observe.shared.events import EventAccumulator, Words
+from mesokit.method.mpcd.observe.shared.events import EventAccumulator, in_parts, ratio
 from mesokit.observe.shared.origins import GROUPS
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
@@ -48,9 +47,7 @@ class ResidenceTime(Observable):
         2.0, doc="without a region: no farther than this from a solid's surface", unit="a", gt=0
     )
     solid: str | None = param(
-        None,
-        doc="name of the wall to be near (any; plates where nothing else is)",
-        min_length=1,
+        None, doc="name of the wall to be near (any; plates where nothing else is)", min_length=1
     )
     of: Literal["centres", "beads"] = param(
         "centres", doc='what must be there: the centre of mass, or any of the "beads"'
@@ -109,10 +106,12 @@ class ResidenceTimeAccumulator(EventAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("durations", "share")
     added: ClassVar[tuple[str, ...]] = ("runs",)
 
-    def __init__(self, observable: ResidenceTime, case: Case) -> None:
-        words = Words("residence-time", observable.label, "residence time", "visits")
-        super().__init__(case, words, "centres", observable.kind, observable.molecules)
-        self.region, self.near, self.of = observable.region, observable.near, observable.of
+    lasting, events = "residence time", "visits"
+
+    def prepare(self) -> None:
+        super().prepare()
+        observable, case = self.observable, self.case
+        self.region, self.near = observable.region, observable.near
         self.size = np.array(case.box.size, float)
         if self.region is None:
             self.look = observable.solids(case).depths(self.near)
@@ -139,7 +138,7 @@ class ResidenceTimeAccumulator(EventAccumulator):
 
     def within(self, beads: Array) -> NDArray[np.bool_]:
         """Which molecules (molecules,) are there."""
-        places = beads.mean(axis=1, keepdims=True) if self.of == "centres" else beads
+        places = beads.mean(axis=1, keepdims=True) if self.observable.of == "centres" else beads
         if self.region is not None:
             low, high = np.array(self.region, float).T
             there = ((places - low) % self.size < high - low).all(axis=2)
@@ -149,25 +148,21 @@ class ResidenceTimeAccumulator(EventAccumulator):
         return np.asarray(there.any(axis=1))
 
     def result(self) -> Result:
-        """The distribution of the times, and what they are in the mean."""
         return self.made(self.comparisons())
 
     def comparisons(self) -> Iterator[Comparison]:
-        """Mean of a visit, mean time until exit, visits, and the share of the time."""
         few = self.note()
         value, error = self.durations.mean()
         note = few or "of a visit; the more often one looks, the shorter they are"
         yield Comparison("mean residence time", value, error, unit="tau", note=note)
         value, error = self.exit_time()
         expected, of_theory = self.until_exit()
-        if self.lasting():
+        if self.visit_is_long():
             expected, of_theory = np.nan, "lower bound: of visits as long as half the run"
         yield Comparison("mean time until exit", value, error, expected, "tau", of_theory)
         yield self.counted()
-        value, error = float(self.share.mean()[0]), float(self.share.error()[0])
-        yield Comparison(
-            "share of the time inside", value, error, self.volume(), note=self.share.caution()
-        )
+        inside, note = self.share.total(), self.share.caution()
+        yield Comparison("share of the time inside", *inside, self.volume(), note=note)
 
     def exit_time(self) -> tuple[float, float]:
         """Mean time from any sample inside to the first one outside, and its standard error.
@@ -180,7 +175,7 @@ class ResidenceTimeAccumulator(EventAccumulator):
             return np.nan, np.nan
         return ratio(np.concatenate([run.visited() for run in self.runs]))
 
-    def lasting(self) -> bool:
+    def visit_is_long(self) -> bool:
         """Whether a visit lasted, or lasts, for half of a run or longer."""
         for run in self.runs:
             events, since = run.durations.runs[0], run.now.get("since", np.zeros(0))
@@ -213,7 +208,7 @@ class ResidenceTimeAccumulator(EventAccumulator):
         """The region's part of the box, where all places are alike; else nan."""
         if self.region is None or self.case.walls or setting.gathered(self.case):
             return np.nan
-        if self.of == "beads" and self.group.length > 1:
+        if self.observable.of == "beads" and self.group.length > 1:
             return np.nan
         low, high = np.array(self.region, float).T
         return float(np.prod((high - low) / self.size))

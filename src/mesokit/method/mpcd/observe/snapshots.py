@@ -1,10 +1,9 @@
-"""Where particles are and how fast, at chosen steps."""
+"""Positions and velocities of particles at chosen steps."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
 from mesokit.case.case import Case
@@ -27,6 +26,9 @@ class Snapshots(Observable):
 
     quantity: Literal["snapshots"] = tag("snapshots")
     in_open_box: ClassVar[bool] = True
+    drawing = "snapshots"
+    value_label = "positions and velocities"
+    units: ClassVar[dict[str, str]] = {"position": "a", "velocity": "a/tau", "time": "tau"}
     steps: Many[int] = param((0, 1, 10), doc="steps after the warm-up, each a multiple of every")
     axes: tuple[Axis, Axis] = param(("x", "y"), doc="the two axes of the pictures")
     particles: int = param(1000, doc="particles shown, evenly spread over their numbers", ge=1)
@@ -47,7 +49,6 @@ class Snapshots(Observable):
             raise CaseError(f"{given}: expected multiples of every = {self.every}")
 
     def warnings(self, case: Case) -> Iterator[str]:
-        """Steps that the run does not reach."""
         if self.steps[-1] > case.run.steps:
             yield (
                 f"steps = {show(list(self.steps))}: not all are reached; run.steps = "
@@ -57,7 +58,7 @@ class Snapshots(Observable):
 
 @accumulator_of(Snapshots)
 class SnapshotsAccumulator(BlockAccumulator):
-    """What was seen so far, (steps, particles, 4): two coordinates and two velocities.
+    """Samples so far, (steps, particles, 4): two coordinates and two velocities.
 
     Of pooled runs those of the first are kept: places of two runs have no mean.
     """
@@ -65,8 +66,8 @@ class SnapshotsAccumulator(BlockAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("seen", "times", "looks")
     added: ClassVar[tuple[str, ...]] = ("looks",)
 
-    def __init__(self, observable: Snapshots, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.columns = [case.box.index(axis) for axis in observable.axes]
         self.ids = spread_ids(observable.particles, case.particles)
         self.seen = np.zeros((0, len(self.ids), 4))
@@ -74,7 +75,6 @@ class SnapshotsAccumulator(BlockAccumulator):
         self.looks = 0
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Look, if this is one of the steps."""
         self.looks += 1
         step = fluid.step - self.case.run.warmup
         if step not in self.observable.steps or step in self.times[:, 0]:
@@ -85,45 +85,35 @@ class SnapshotsAccumulator(BlockAccumulator):
         self.times = np.concatenate([self.times, [[step, fluid.time]]])
 
     def result(self) -> Result:
-        """What was seen, in the order of the steps."""
         first, second = self.observable.axes
         names = [first, second, f"v_{first}", f"v_{second}"]
         x = {"step": self.times[:, 0].astype(np.int64), "particle": self.ids}
-        return Result(
-            quantity="snapshots",
-            drawing="snapshots",
-            name=self.name,
-            x=x | {"component": np.array(names)},
-            value=self.seen.copy(),
-            error=np.full(self.seen.shape, np.nan),
-            label="positions and velocities",
-            units={"value": "", "position": "a", "velocity": "a/tau", "time": "tau"},
-            comparisons=tuple(self._comparisons()),
+        # the place of each particle's kind in fluid.species; 0 of a fluid of one kind
+        ends = np.cumsum([kind.number for kind in groups(self.case)[0].kinds])
+        species = np.searchsorted(ends, self.ids, side="right")
+        return self.report(
+            x | {"component": np.array(names)},
+            self.seen.copy(),
+            self._comparisons(),
             samples=self.looks,
             extra={
                 "time": self.times[:, 1].copy(),
-                "species": self._species(),
+                "species": species.astype(np.int64),
                 "size": np.array([self.case.box.size[k] for k in self.columns], float),
             },
         )
 
-    def _species(self) -> NDArray[np.int64]:
-        """The place of each particle's kind in fluid.species; 0 of a fluid of one kind."""
-        counts = [kind.number for kind in groups(self.case)[0].kinds]
-        return np.searchsorted(np.cumsum(counts), self.ids, side="right").astype(np.int64)
-
-    def _comparisons(self) -> list[Comparison]:
+    def _comparisons(self) -> Iterator[Comparison]:
         """Of particles that fly freely nothing but the place changes, and that evenly."""
         case, seen = self.case, self.seen
         free = not (case.fluid.collision.acts or setting.driven(case) or case.walls)
         if not free or case.fluid.molecule is not None or len(seen) < 2:
-            return []
+            return
         exact = "exact: only rounding may show"
-        change = float(abs(seen[:, :, 2:] - seen[0, :, 2:]).max())
-        found = [Comparison("largest change of a velocity", change, 0.0, 0.0, "a/tau", exact)]
+        change = abs(seen[:, :, 2:] - seen[0, :, 2:]).max()
+        yield Comparison("largest change of a velocity", change, 0.0, 0.0, "a/tau", exact)
         if set(self.observable.axes) <= set(case.box.open):
             since = (self.times[:, 1] - self.times[0, 1])[:, None, None]
             flown = seen[:, :, :2] - seen[0, :, :2] - since * seen[0, :, 2:]
-            far = float(abs(flown).max())
-            found.append(Comparison("largest way off free flight", far, 0.0, 0.0, "a", exact))
-        return found
+            far = abs(flown).max()
+            yield Comparison("largest way off free flight", far, 0.0, 0.0, "a", exact)

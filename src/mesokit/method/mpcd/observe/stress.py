@@ -1,5 +1,6 @@
 """The stress of the fluid, kinetic, collisional, of bonds: pressure, and viscosity under shear."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -11,12 +12,11 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import springs_in
 from mesokit.method.mpcd.expected.rheometer import bond_viscosity, shear_note, stress_in_shear
-from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
-from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
+from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator, kept
 from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result, joined
 
 PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
 ROUSE = "Rouse molecules, beads with the friction of free particles"
@@ -36,6 +36,8 @@ class Stress(Observable):
 
     quantity: Literal["stress"] = tag("stress")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
+    drawing = "tensor"
+    value_label = "stress"
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
 
     def check(self, case: Case) -> None:
@@ -48,32 +50,32 @@ class Stress(Observable):
 class StressAccumulator(TensorAccumulator):
     """Block averages of both parts and their sum."""
 
-    def __init__(self, observable: Stress, case: Case) -> None:
+    def prepare(self) -> None:
+        case = self.case
         self.bonded_beads = case.fluid.molecule is not None or case.solutes is not None
         self.given = PARTS[: 3 if self.bonded_beads else 2]
-        self.every = observable.every
         # numbers per cell of all that carries momentum, and of what moves as one
         self.carriers, self.wholes = setting.carriers(case)
         self.springs = springs_in(case)
-        super().__init__(observable, case, (*self.given, "total"))
+        self.parts = (*self.given, "total")
+        super().prepare()
 
     def observe(self, fluid: RunningFluid) -> None:
         parts = [fluid.stress[name] for name in self.given]
         self.blocks.add(np.stack([*parts, sum(parts[1:], parts[0])]))
 
     def result(self) -> Result:
-        """Tensors, pressure and viscosities."""
         theory = "molecular chaos, ideal gas" + (" of molecules" if self.bonded_beads else "")
         if self.case.box.steady_rate and self.bonded() is not None:
             theory = "molecules in shear"
-        return self.tensors("stress", "stress", UNIT[self.case.box.dimension], theory)
+        return self.tensors(theory, value=UNIT[self.case.box.dimension])
 
     def length(self) -> float:
-        """Of a run."""
-        return self.blocks.count / self.blocks.series * self.every * self.case.fluid.timestep
+        samples = self.blocks.count / self.blocks.series
+        return samples * self.observable.every * self.case.fluid.timestep
 
     def short_run(self) -> str:
-        """Where blocking cannot see how slowly bonds change: a note."""
+        """Caveat of a run that is short against the relaxation time of the bonds."""
         slowest = max((float(times.mode[0]) for _, times in self.springs), default=0.0)
         if not 0 < self.length() < ENOUGH * slowest:
             return ""
@@ -170,9 +172,8 @@ class StressAccumulator(TensorAccumulator):
             return np.nan, np.nan, np.nan
         return c.viscosity_kinetic, c.viscosity_collisional, c.viscosity
 
-    def comparisons(self) -> list[Comparison]:
-        """Pressure, and under shear the viscosity with its parts."""
-        case, found = self.case, []
+    def comparisons(self) -> Iterator[Comparison]:
+        case = self.case
         mean, error = self.blocks.mean(), self.errors()
         rate = case.box.steady_rate
         if rate:
@@ -190,16 +191,14 @@ class StressAccumulator(TensorAccumulator):
                     nu, note = bonded.viscosity / setting.mass_density(case), shear_note(case)
                 elif self.bonded_beads:
                     note = IN_SHEAR if part < 0 else OF_PART
-                value = float(mean[part, 0, 1] / scale)
-                spread = float(error[part, 0, 1] / abs(scale))
+                value, spread = mean[part, 0, 1] / scale, error[part, 0, 1] / abs(scale)
                 if part < 0 and not note:
                     note = setting.chaos_is_off(case, nu, spread)
                 what, note = f"{name} from the stress", self.cautioned(note, part)
-                found.append(Comparison(what, value, spread, nu, "a^2/tau", note))
+                yield Comparison(what, value, spread, nu, "a^2/tau", note)
             if self.bonded_beads:
-                found.append(self.bond_part(scale))
-            found += self.normal_differences()
-        known = self.known()
+                yield self.bond_part(scale)
+            yield from self.normal_differences()
         # a thermostat of cells takes a part of the shear for heat that is not there
         held = bool(rate) and setting.isothermal(case) and not self.bonded_beads
         warm = (setting.warming(case) or 0.0) * rate**2 if held else 0.0
@@ -210,15 +209,13 @@ class StressAccumulator(TensorAccumulator):
         d = case.box.dimension
         pressure, spread = self.summed(-1, -np.eye(d) / d)
         spread = setting.with_start(case, spread, ideal, self.blocks.series)
-        ideal = ideal if known else np.nan
+        ideal = ideal if self.known() else np.nan
         note = ""
         if case.box.sheared and self.bonded_beads:
             note = shear_note(case) if np.isfinite(ideal) else IN_SHEAR
         elif ideal * self.flights_in_shear() > 0.5 * spread:
             note = "approximate: of a fluid at rest, to which shear adds its square"
-        note = self.cautioned(note)
-        found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d], note))
-        return found
+        yield Comparison("pressure", pressure, spread, ideal, UNIT[d], self.cautioned(note))
 
     def flights_in_shear(self) -> float:
         """The share that shear adds to the pressure, by its size: the square of the shear rate
@@ -229,41 +226,30 @@ class StressAccumulator(TensorAccumulator):
 
     def cautioned(self, note: str, part: int = -1) -> str:
         """A note on a part, and what to say of its error bar."""
-        short = self.short_run() if self.bonds_in(part) else ""
-        return "; ".join(filter(None, (note, short)))
+        return joined(note, self.short_run() if self.bonds_in(part) else "")
 
     def bond_part(self, scale: float) -> Comparison:
-        """What bonds add to the viscosity; `scale` is the mass density times the shear rate."""
+        """Part of the bonds in the viscosity; `scale` is the mass density times the shear rate."""
         value, error = self.blocks.mean()[2, 0, 1] / scale, self.errors()[2, 0, 1] / scale
         known, expected, note = bond_viscosity(self.case), np.nan, ""
         if known is not None:
             expected = known / setting.mass_density(self.case)
-            note = shear_note(self.case)
-            if not self.bonded():
-                note = f"approximate: at zero shear rate; {ROUSE}"
-        what = "bond part from the stress"
-        note = self.cautioned(note)
-        return Comparison(what, float(value), float(abs(error)), expected, "a^2/tau", note)
+            at_rest = f"approximate: at zero shear rate; {ROUSE}"
+            note = shear_note(self.case) if self.bonded() else at_rest
+        what, note = "bond part from the stress", self.cautioned(note)
+        return Comparison(what, value, abs(error), expected, "a^2/tau", note)
 
     def bonded(self) -> theory.ShearStress | None:
-        """What Rouse's theory expects of a sheared fluid of molecules."""
+        """Stress of a sheared fluid of molecules by Rouse's theory."""
         return None if self.case.fluid.molecule is None else stress_in_shear(self.case)
 
-    def normal_differences(self) -> list[Comparison]:
+    def normal_differences(self) -> Iterator[Comparison]:
         """First and, in 3D, second normal-stress difference of a sheared fluid."""
         bonded, d = self.bonded(), self.case.box.dimension
         known = (bonded.first, bonded.second) if bonded is not None else (np.nan, np.nan)
-        found = []
+        note = self.cautioned(shear_note(self.case) if bonded else "")
         for which, name in enumerate(("first", "second")[: d - 1]):
             weight = np.zeros((d, d))
             weight[which, which], weight[which + 1, which + 1] = 1.0, -1.0
-            found.append(
-                Comparison(
-                    f"{name} normal-stress difference",
-                    *self.summed(-1, weight),
-                    known[which],
-                    UNIT[d],
-                    self.cautioned(shear_note(self.case) if bonded else ""),
-                )
-            )
-        return found
+            what, found = f"{name} normal-stress difference", self.summed(-1, weight)
+            yield Comparison(what, *found, known[which], UNIT[d], note)

@@ -11,6 +11,7 @@ from mesokit.case.component import component, option, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.rheometer import modes_of_stress, shear_note
+from mesokit.method.mpcd.observe.shared.decay import averaged
 from mesokit.method.mpcd.observe.stress import UNIT
 from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid
@@ -35,6 +36,8 @@ class StressAutocorrelation(Observable):
 
     quantity: Literal["stress-autocorrelation"] = tag("stress-autocorrelation")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
+    drawing = "modulus"
+    value_label = "relaxation modulus G"
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     max_lag: int | None = param(
         None, doc="longest lag (as the run allows unless said)", unit="steps", ge=1
@@ -55,62 +58,39 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
     memory: ClassVar[tuple[str, ...]] = ("correlator",)
     added: ClassVar[tuple[str, ...]] = ("runs",)
 
-    def __init__(self, observable: StressAutocorrelation, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         max_lag = None if observable.max_lag is None else observable.max_lag // observable.every
         d = case.box.dimension
         self.correlator = MultipleTau((d * (d - 1),), max_lag=max_lag, pooled=1)
         self.runs = 1  # that were pooled
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample. Rules that do not conserve angular momentum have no symmetric stress."""
+        # rules that do not conserve angular momentum have no symmetric stress
         stress = np.sum(list(fluid.stress.values()), axis=0)
         self.correlator.add(stress[~np.eye(len(stress), dtype=bool)])
 
     def modulus(self) -> tuple[Array, Estimate]:
         """Time (n,) and G(t) with what each block of time adds to it."""
         case = self.case
-        scale = case.box.volume / case.fluid.kT
-        lags: list[Array] = []
-        values: list[Array] = []
-        residuals: list[Array] = []
-        weights = np.zeros(0)
-        for lag, sums, counts in self.correlator.products(within_blocks=True):
-            total = counts.sum(axis=0)
-            mean = sums.sum(axis=0) / total
-            weights = counts[:, 0] if not lags else weights
-            lags.append(lag * self.observable.every * case.fluid.timestep)
-            values.append(scale * mean)
-            residuals.append(scale * (sums - mean * counts) / total)
-        if not lags:
-            return np.zeros(0), Estimate(np.zeros(0), np.zeros((0, 0)), weights)
-        joined = Estimate(np.concatenate(values), np.concatenate(residuals, axis=1), weights)
-        return np.concatenate(lags), joined
+        lags, found = averaged(self.correlator, case.box.volume / case.fluid.kT)
+        return lags * self.observable.every * case.fluid.timestep, found
 
     def result(self) -> Result:
-        """G(t), its integral and its Fourier transforms."""
         time, modulus = self.modulus()
         known = modes_of_stress(self.case)
         bonds = None
         if known is not None and known[1] and len(time):
             bonds = theory.relaxation_modulus(time, *known[:2])
             bonds[time == 0] = np.nan  # where all collide as well
-        extra: dict[str, Any] = {}
-        comparisons: list[Comparison] = []
-        if len(time) > 3:
-            comparisons, extra = self.integrals(time, modulus)
-        return Result(
-            quantity="stress-autocorrelation",
-            drawing="modulus",
-            name=self.name,
-            x={"time": time},
-            value=modulus.value,
-            error=modulus.error,
-            label="relaxation modulus G",
+        found, extra = self.integrals(time, modulus) if len(time) > 3 else ([], {})
+        return self.report(
+            {"time": time},
+            modulus,
+            found,
             units={"value": UNIT[self.case.box.dimension], "time": "tau"},
             expected=bonds,
             theory="Rouse, bonds alone",
-            comparisons=tuple(comparisons),
             samples=self.correlator.count,
             extra=extra,
         )
@@ -133,7 +113,7 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         return int(quiet[0]) if len(quiet) else len(time)
 
     def note(self, last: float, error: float) -> str:
-        """How far the integral goes, what that leaves out, and how good the theory is.
+        """End of the integral, what that leaves out, and how good the theory is.
 
         `error`: relative to theory; a large one says nothing about the theory.
         """
@@ -159,7 +139,7 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         weight[: len(widths)] += widths / 2
         weight[1:end] += widths[: end - 1] / 2
         density = setting.mass_density(self.case)
-        value, spread = modulus.scalar(weight @ modulus.value, weight)
+        value, spread = modulus.total(weight)
         if not self.remembers() and (gas := setting.transport(self.case)) is not None:
             kinetic = gas.viscosity_kinetic * density  # which grows as kT
             spread = setting.with_start(self.case, spread, kinetic, self.runs)
@@ -169,12 +149,9 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         if known is not None:  # the integral to the same time
             bonds = sum(known[0] * tau * -math.expm1(-last / tau) for tau in known[1])
             expected = (known[2] + bonds) / density
-        found = [
-            Comparison(
-                "viscosity from the integral", value / density, spread / density, expected,
-                "a^2/tau", self.note(last, spread / density / expected),
-            )
-        ]  # fmt: skip
+        value, spread, what = value / density, spread / density, "viscosity from the integral"
+        note = self.note(last, spread / expected)
+        found = [Comparison(what, value, spread, expected, "a^2/tau", note)]
         longest = last if self.remembers() else time[-1]
         if longest < 2 * time[1]:
             return found, {}

@@ -15,7 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import springs_in
 from mesokit.method.mpcd.expected.rheometer import shear_note, spreading_time, stress_of_history
-from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.method.mpcd.observe.shared.tensor import kept
 from mesokit.method.mpcd.observe.stress import UNIT
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
@@ -39,6 +39,8 @@ class StressInTime(Observable):
 
     quantity: Literal["stress-in-time"] = tag("stress-in-time")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
+    drawing = "stress in time"
+    value_label = "stress"
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     window: int = param(10, doc="steps that a point is the mean over", unit="steps", ge=1)
 
@@ -69,7 +71,6 @@ class StressInTime(Observable):
             raise CaseError(f"window = {self.window}: expected at least {least}, for so many steps")
 
     def warnings(self, case: Case) -> Iterator[str]:
-        """A run that sees no whole period."""
         steps = steps_of_period(case)
         if steps is not None and -(-case.run.warmup // steps) * steps + steps > (
             case.run.warmup + case.run.steps
@@ -96,8 +97,9 @@ class StressInTimeAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "sums", "counts", "first", "samples")
 
-    def __init__(self, observable: StressInTime, case: Case) -> None:
-        self.case, self.name, self.window = case, observable.label, observable.window
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
+        self.window = observable.window
         self.samples_of_window = observable.window // observable.every
         self.bonded = case.fluid.molecule is not None or case.solutes is not None
         self.mass = setting.mass_density(case) * case.box.volume
@@ -113,8 +115,7 @@ class StressInTimeAccumulator(BlockAccumulator):
         self.others: list[StressInTimeAccumulator] = []  # pooled with it
 
     def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample: the stress of a step belongs to the window in which the step ends."""
-        before = fluid.step - 1
+        before = fluid.step - 1  # a step's stress belongs to the window in which the step ends
         repetition, inside = divmod(before, self.period) if self.period else (0, before)
         row = inside // self.window
         if row >= self.rows:  # the run is longer than its case says
@@ -184,7 +185,6 @@ class StressInTimeAccumulator(BlockAccumulator):
         return rows, Estimate(mean, residuals, weights.astype(float))
 
     def result(self) -> Result:
-        """Stress by window, with theory."""
         rows, flat = self.estimate()
         shape = (len(rows), len(self.components))
         timestep, expected = self.case.fluid.timestep, self.expected(rows)
@@ -195,19 +195,17 @@ class StressInTimeAccumulator(BlockAccumulator):
         error = np.full(shape, np.nan)
         if many:
             known = flat.error.reshape(shape) * student(len(flat.weights))
-            error = np.maximum(known, self.scatter(flat))
-        return Result(
-            quantity="stress-in-time",
-            drawing="stress in time",
-            name=self.name,
-            x={"time": edges.mean(axis=1), "component": np.array(self.components)},
-            value=flat.value.reshape(shape),
-            error=error,
-            label="stress",
+            # at least what springs at rest fluctuate in single windows
+            single, number = float(self.fluctuation(np.zeros(()))), flat.weights.sum()
+            least = [(SQUARES[name] * single / number) ** 0.5 for name in self.components]
+            error = np.maximum(known, least)
+        return self.report(
+            {"time": edges.mean(axis=1), "component": self.components},
+            (flat.value.reshape(shape), error),
+            self.comparisons(rows, flat, expected) if many else (),
             units={"value": UNIT[self.case.box.dimension], "time": "tau", "component": ""},
             expected=expected,
             theory="Newtonian fluid" if self.case.fluid.molecule is None else "Rouse",
-            comparisons=tuple(self.comparisons(rows, flat, expected)) if many else (),
             samples=int(sum(one.samples[0] for one in (self, *self.others))),
             extra={
                 "rate": np.diff(strain, axis=1)[:, 0] / (self.window * timestep),
@@ -217,7 +215,7 @@ class StressInTimeAccumulator(BlockAccumulator):
         )
 
     def expected(self, rows: NDArray[np.int64]) -> Array | None:
-        """What theory says of these rows: of the average over the periods that were seen."""
+        """Stress of theory in these rows, averaged over the periods that were measured."""
         count = self.blocks.count // (1 + len(self.others)) if self.period else 1
         first = max(int(self.first[0]), 0)
         if not len(rows):
@@ -244,12 +242,6 @@ class StressInTimeAccumulator(BlockAccumulator):
             start=np.zeros(np.shape(lag)),
         )
 
-    def scatter(self, flat: Estimate) -> Array:
-        """Least errors (components,) of single windows by how much springs at rest fluctuate."""
-        single = float(self.fluctuation(np.zeros(())))
-        repetitions = flat.weights.sum()
-        return np.array([(SQUARES[name] * single / repetitions) ** 0.5 for name in self.components])
-
     def of_factor(self, rows: NDArray[np.int64], flat: Estimate, weight: Array, name: str) -> float:
         """Least error of a sum of windows (rows,), of one component: few repetitions may agree by
         chance."""
@@ -263,27 +255,23 @@ class StressInTimeAccumulator(BlockAccumulator):
 
     def comparisons(
         self, rows: NDArray[np.int64], flat: Estimate, expected: Array | None
-    ) -> list[Comparison]:
-        """By which factor the curves differ from those of theory, by least squares."""
+    ) -> Iterator[Comparison]:
         if expected is None:
-            return []
-        found, molecules = [], self.case.fluid.molecule is not None
+            return
         for k, name in enumerate(self.components):
             weight = np.zeros(expected.shape)
             square = (expected[:, k] ** 2).sum()
             if not square > 0:
                 continue
             weight[:, k] = expected[:, k] / square
-            value, error = flat.scalar(flat.value @ weight.ravel(), weight.ravel())
+            value, error = flat.total(weight.ravel())
             error *= student(len(flat.weights))
             error = max(error, self.of_factor(rows, flat, weight[:, k], name))
-            note = setting.chaos_is_off(self.case, 1.0, error)
-            if molecules:
-                note = shear_note(self.case)
             if name == FIRST:
-                note = (
-                    "approximate: of uniform shear, which takes "
-                    f"{spreading_time(self.case):.2g} tau to spread from the images"
-                )
-            found.append(Comparison(f"{name} over theory", value, error, 1.0, "", note))
-        return found
+                time = f"{spreading_time(self.case):.2g} tau to spread from the images"
+                note = f"approximate: of uniform shear, which takes {time}"
+            elif self.case.fluid.molecule is not None:
+                note = shear_note(self.case)
+            else:
+                note = setting.chaos_is_off(self.case, 1.0, error)
+            yield Comparison(f"{name} over theory", value, error, 1.0, "", note)

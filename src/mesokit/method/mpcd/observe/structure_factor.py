@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -46,6 +46,8 @@ class StructureFactor(Observable):
 
     quantity: Literal["structure-factor"] = tag("structure-factor")
     needs_fluid: ClassVar[bool] = False
+    drawing = "structure factor"
+    units: ClassVar[dict[str, str]] = {"q": "1/a"}
     of: Literal["beads", "particles", "chains"] | None = param(
         None, doc=f'{OF}; "chains": each molecule alone'
     )
@@ -73,7 +75,6 @@ class StructureFactor(Observable):
             )
 
     def chosen(self, case: Case) -> list[Group]:
-        """Groups of molecules or particles."""
         of = default_of(case, self.of)
         if of == "chains":
             return groups_of(case, "beads", 1 if self.kind is None else self.kind)
@@ -90,8 +91,8 @@ class StructureFactorAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("means", "sums")
 
-    def __init__(self, observable: StructureFactor, case: Case) -> None:
-        self.name, self.case = observable.label, case
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.of, self.groups = default_of(case, observable.of), observable.chosen(case)
         self.kind = observable.kind
         alone = self.of == "chains"
@@ -124,29 +125,21 @@ class StructureFactorAccumulator(BlockAccumulator):
 
     def altogether(self, fluid: RunningFluid) -> NDArray[np.complex128]:
         """Sum of e^(-i q r) over all that are looked at, (K,)."""
-        found = np.zeros(len(self.waves), complex)
-        for group in self.groups:
-            of_fluid = group.first < self.case.particles
-            found += (self.of_particles if of_fluid else self.of_solutes)(fluid, group)
-        return found
-
-    def of_particles(self, fluid: RunningFluid, group: Group) -> NDArray[np.complex128]:
-        """The same of a group in the fluid, whose kinds have a mass each."""
-        found, start = np.zeros(len(self.waves), complex), 0
-        first, last = group.first, group.first + group.number * group.length
-        for kind in self.case.groups[0].kinds:
-            own = max(first, start), min(last, start + kind.number)
-            start += kind.number
-            if own[0] < own[1]:
-                found += fluid.modes(self.waves, *own)[0] / kind.mass
-        return found
-
-    def of_solutes(self, fluid: RunningFluid, group: Group) -> NDArray[np.complex128]:
-        """The same of solutes, few enough to ask for all."""
         found, step = np.zeros(len(self.waves), complex), max(1, CHUNK // len(self.waves))
-        r = fluid.positions(group.beads().ravel())
-        for start in range(0, len(r), step):
-            found += wave_sums(r[None, start : start + step], self.waves)[0]
+        for group in self.groups:
+            first, last = group.first, group.first + group.number * group.length
+            if first >= self.case.particles:  # solutes, few enough to read all
+                r = fluid.positions(group.beads().ravel())
+                pieces = (r[None, start : start + step] for start in range(0, len(r), step))
+                of_group = sum(wave_sums(piece, self.waves)[0] for piece in pieces)
+            else:
+                of_group, start = np.zeros(len(self.waves), complex), 0
+                for kind in self.case.groups[0].kinds:  # each has a mass
+                    own = max(first, start), min(last, start + kind.number)
+                    start += kind.number
+                    if own[0] < own[1]:
+                        of_group += fluid.modes(self.waves, *own)[0] / kind.mass
+            found += of_group
         return found
 
     def pool(self, other: StructureFactorAccumulator) -> None:
@@ -168,28 +161,21 @@ class StructureFactorAccumulator(BlockAccumulator):
         return np.fmax(found, scatter_of_waves(each, self.lengths, self.members))
 
     def result(self) -> Result:
-        """S(q), beside Debye's sum or 1."""
         expected = self.expected()
-        what = "chain" if self.of == "chains" else "all"
         bonded = max(group.length for group in self.groups) > 1
-        return Result(
-            quantity="structure-factor",
-            drawing="structure factor",
-            name=self.name,
-            x={"q": self.over_shells(self.lengths)},
-            value=self.means.mean(),
-            error=self.error(),
-            label="S(q) of one molecule" if what == "chain" else "S(q)",
-            units={"value": "", "q": "1/a"},
+        return self.report(
+            {"q": self.over_shells(self.lengths)},
+            (self.means.mean(), self.error()),
+            self.comparisons(expected),
+            label="S(q) of one molecule" if self.of == "chains" else "S(q)",
             expected=expected,
             theory="Debye" if bonded else "ideal gas",
-            comparisons=tuple(self.comparisons(expected)),
             samples=self.means.blocks.count,
             extra={"waves": self.members},
         )
 
     def expected(self) -> Array | None:
-        """That of one molecule on the average, where molecules do not know of one another."""
+        """That of one molecule on average, where molecules are independent."""
         if not independent(self.case, self.of, self.groups):
             return None
         lengths, place = np.unique(np.round(self.lengths, 12), return_inverse=True)
@@ -212,23 +198,17 @@ class StructureFactorAccumulator(BlockAccumulator):
         links, d = group.molecule.bonds, self.case.box.dimension
         return theory.gaussian_structure_factor(lengths, links, bond, d, group.length)
 
-    def comparisons(self, expected: Array | None) -> list[Comparison]:
-        """Longest waves; and by which factor all of it differs from theory, by least squares."""
+    def comparisons(self, expected: Array | None) -> Iterator[Comparison]:
         mean, error = self.means.mean(), self.error()
-        if not self.means.blocks.count:
-            return []
         q = f"at q = {self.over_shells(self.lengths)[0]:.4g}"
-        known = np.nan if expected is None else float(expected[0])
-        found = [
-            Comparison("S of the longest waves", float(mean[0]), float(error[0]), known, note=q)
-        ]
+        known = np.nan if expected is None else expected[0]
+        yield Comparison("S of the longest waves", mean[0], error[0], known, note=q)
         if expected is not None:
-            weight = (expected / (expected**2).sum())[None]
-            value, bar = float(self.means.mean(weight)[0]), float(self.means.error(weight)[0])
+            weight = expected / (expected**2).sum()
+            value, bar = self.means.total(weight)
             if self.of != "chains":  # shells are independent
-                bar = max(bar, float(np.sqrt(((weight[0] * error) ** 2).sum())))
-            found.append(Comparison("S(q) over theory", value, bar, 1.0))
-        return found
+                bar = max(bar, float(np.sqrt(((weight * error) ** 2).sum())))
+            yield Comparison("S(q) over theory", value, bar, 1.0)
 
 
 def reachable(size: Sequence[float]) -> float:
@@ -250,7 +230,11 @@ def wave_shells(size: Sequence[float], largest: float, shells: int, most: int) -
     longest = [int(largest * length / (2 * math.pi)) for length in size]
     axes = [np.arange(0 if k == 0 else -n, n + 1) for k, n in enumerate(longest)]
     whole = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(size))
-    whole = whole[_first_half(whole)]
+    chosen, zero = np.zeros(len(whole), bool), np.ones(len(whole), bool)
+    for along in whole.T:  # those whose first component that is not 0 is above 0
+        chosen |= zero & (along > 0)
+        zero &= along == 0
+    whole = whole[chosen]
     vectors = 2 * np.pi * whole / np.array(size, float)
     length = np.sqrt((vectors**2).sum(axis=1))
     place = np.ceil(length / largest * shells - 1e-9).astype(int) - 1
@@ -269,15 +253,6 @@ def wave_sums(r: Array, waves: Array) -> NDArray[np.complex128]:
         found.real[here] = np.cos(phase).sum(axis=1)  # in half the time of a complex exponential
         found.imag[here] = -np.sin(phase).sum(axis=1)
     return found
-
-
-def _first_half(whole: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Those whose first component that is not 0 is above 0."""
-    chosen, zero = np.zeros(len(whole), bool), np.ones(len(whole), bool)
-    for along in whole.T:
-        chosen |= zero & (along > 0)
-        zero &= along == 0
-    return chosen
 
 
 def scatter_of_waves(each: Array, lengths: Array, members: NDArray[np.int64]) -> Array:
@@ -309,15 +284,11 @@ def scatter_of_waves(each: Array, lengths: Array, members: NDArray[np.int64]) ->
             degree = min(CURVE, known - 1)
             freedom = runs * (near.stop - near.start) - degree - 1
             if freedom >= FEWEST:
-                away = _off_the_curve(each[:, near], lengths[near], degree)
+                q = lengths[near]
+                powers = np.vander((q - q.mean()) / q.mean(), degree + 1)
+                trend = np.linalg.lstsq(powers, each[:, near].mean(axis=0), rcond=None)[0]
+                away = each[:, near] - powers @ trend
                 variance = (away**2).sum() / freedom
                 found[place] = np.sqrt(variance / (members[place] * runs))
                 break
     return found
-
-
-def _off_the_curve(each: Array, lengths: Array, degree: int) -> Array:
-    """What is left (runs, waves) when the best polynomial is taken away."""
-    powers = np.vander((lengths - lengths.mean()) / lengths.mean(), degree + 1)
-    mean = each.mean(axis=0)
-    return np.asarray(each - powers @ np.linalg.lstsq(powers, mean, rcond=None)[0])

@@ -12,12 +12,7 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import FINE, solids_of
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.observe.shared.shells import (
-    Array,
-    ShellAccumulator,
-    shell_edges,
-    shell_volumes,
-)
+from mesokit.method.mpcd.observe.shared.shells import Array, ShellAccumulator, shell_volumes
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Comparison, Result
@@ -39,6 +34,7 @@ class SurfaceProfile(Observable):
     """
 
     quantity: Literal["surface-profile"] = tag("surface-profile")
+    drawing = "profile"
     of: Literal["density", "temperature", "speed"] = param(
         "density", doc="what: 'density', 'temperature' or 'speed'"
     )
@@ -71,25 +67,22 @@ class SurfaceProfile(Observable):
 class SurfaceProfileAccumulator(ShellAccumulator):
     """Sums in shells; velocities are out of the surface, along it, and across both (3D)."""
 
-    def __init__(self, observable: SurfaceProfile, case: Case) -> None:
-        self.observable, self.name = observable, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         solids = solids_of(case)
         self.look = solids.depths(observable.depth)
         self.body = None if observable.solid is None else solids.names.index(observable.solid)
         driven = setting.driven_axis(case)
         self.flow = AXES.index(observable.flow) if observable.flow else driven
-        edges = shell_edges(0.0, observable.depth, observable.bins_per_cell)
-        super().__init__(case, edges, case.box.dimension)
+        self.prepare_shells(0.0, observable.depth)
 
     def locate(self, r: Array) -> tuple[Array, Array]:
-        """Distance from the nearest solid, and its normal there."""
         body, distance, normal = self.look(r)
         # rounding may put a particle on a surface just behind it
         seen = body >= 0 if self.body is None else body == self.body
         return np.where(seen, np.maximum(distance, 0.0), np.inf), normal
 
     def along(self, place: Array, v: Array) -> Array:
-        """Velocity along the normal, along the surface with the flow, and across both."""
         out, d = place, self.dimension
         if self.flow is None and d == 2:
             tangent = np.stack([-out[:, 1], out[:, 0]], axis=1)
@@ -101,43 +94,34 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         frame = [out, tangent] + ([np.cross(out, tangent)] if d == 3 else [])
         return np.stack([(direction * v).sum(axis=1) for direction in frame])
 
-    def labels(self, of: str) -> tuple[str, str]:
-        """What is measured, and its unit."""
-        return LABELS.get(of, (of, self.case.box.density_unit))
-
     def result(self) -> Result:
-        """The profile, what is expected of it, and how near the surface that holds."""
-        of, expected, found = self.observable.of, self.expected(), []
+        of, expected = self.observable.of, self.expected()
+        found: list[Comparison] = []
         value = {
             "density": lambda: self.density(self.volumes),
             "temperature": self.temperature,
             "speed": lambda: self.velocity(1),
         }[of]()
+        label, unit = LABELS.get(of, (of, self.case.box.density_unit))
         note = self.note()
         if expected is not None and self.blocks.count and np.isfinite(value.value).all():
-            found = self.next_to_surface(value, expected, note)
+            found = [self.next_to_surface(value, expected, unit, note)]
             if not note:
                 found += self.chi_square(value, expected, "against theory")
-        label, unit = self.labels(of)
-        return Result(
-            quantity="surface-profile",
-            drawing="profile",
-            name=self.name,
-            x={"distance": self.centres},
-            value=value.value,
-            error=value.error,
+        return self.report(
+            {"distance": self.centres},
+            value,
+            found,
             label=label,
             units={"value": unit, "distance": "a"},
             expected=expected,
             theory={"density": "ideal gas", "temperature": "kT of the case"}.get(of, "rest")
             + (", approximate" if note else ""),
-            comparisons=tuple(found),
-            samples=self.blocks.count,
             extra={"of": of, "edges": self.edges},
         )
 
     def note(self) -> str:
-        """Why theory is known to be off by more than an error bar, "" where it is not."""
+        """Reason for which theory is off by more than an error bar, "" where it is not."""
         of, driven = self.observable.of, setting.driven(self.case)
         if of == "temperature":
             if driven:
@@ -148,7 +132,6 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         return ""
 
     def expected(self) -> Array | None:
-        """In each shell; None without a theory."""
         fluid, driven = self.case.fluid, setting.driven(self.case)
         if self.observable.of == "density":
             return np.full(self.bins, fluid.density)
@@ -156,19 +139,19 @@ class SurfaceProfileAccumulator(ShellAccumulator):
             return np.full(self.bins, fluid.kT) if setting.at_kT(self.case) else None
         return None if driven else np.zeros(self.bins)
 
-    def next_to_surface(self, value: Estimate, expected: Array, note: str) -> list[Comparison]:
+    def next_to_surface(self, value: Estimate, expected: Array, unit: str, note: str) -> Comparison:
         """The mean of the cell next to the surface: over its volume, or its particles."""
         first = self.edges[1:] <= 1.0 + 1e-9
         if not first.any():
             first = np.arange(self.bins) == 0
         parts = self.volumes if self.observable.of == "density" else self.crowd
         weight = np.where(first, parts, 0.0) / parts[first].sum()
-        mean, error = value.scalar(weight @ value.value, weight)
+        mean, error = value.total(weight)
         known, of = float(weight @ expected), self.observable.of
         if of == "temperature":
             error = setting.with_start(self.case, error, known, self.blocks.series)
         what = f"{of} in the cell at the surface"
-        return [Comparison(what, mean, error, known, self.labels(of)[1], note)]
+        return Comparison(what, mean, error, known, unit, note)
 
     @functools.cached_property
     def volumes(self) -> Array:

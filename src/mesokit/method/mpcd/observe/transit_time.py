@@ -1,4 +1,4 @@
-"""How long molecules take from one plane across the flow to the next."""
+"""Times that molecules take from one plane across the flow to the next."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal
@@ -13,17 +13,16 @@ from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import drift_of, flow_axis, flow_sign
 from mesokit.method.mpcd.expected.selection import KIND, group_of
-from mesokit.method.mpcd.observe.shared.durations import sum_error
 from mesokit.method.mpcd.observe.shared.events import (
     EventAccumulator,
-    Words,
     crossing,
     require_still,
+    sum_error,
 )
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result, joined
 
 
 @component
@@ -55,29 +54,30 @@ class TransitTime(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without molecules, and for an axis along which images slide."""
         group_of(case, self.of, self.kind)
-        require_still(case, self.axis_of(case), "axis")
-
-    def axis_of(self, case: Case) -> int:
-        """Number of the axis."""
-        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
+        require_still(case, flow_axis(case, self.axis), "axis")
 
 
 @accumulator_of(TransitTime)
 class TransitTimeAccumulator(EventAccumulator):
-    """Where each molecule was, the next plane that it has not been at, and when it was at the last.
+    """Place of each molecule, the next plane that it has not reached, and the time at the last.
 
     Memory: `time`, `place`, `plane` (number of the next), `since` (nan before the first plane).
     """
 
     memory: ClassVar[tuple[str, ...]] = ("durations", "velocity")
 
-    def __init__(self, observable: TransitTime, case: Case) -> None:
-        words = Words("transit-time", observable.label, "transit time", "transits")
-        super().__init__(case, words, observable.of, observable.kind, observable.molecules)
-        self.axis = observable.axis_of(case)
-        self.sign = flow_sign(case, self.axis)
-        self.length = observable.length or unit_cell(case, self.axis)
+    lasting, events = "transit time", "transits"
+
+    def prepare(self) -> None:
+        super().prepare()
+        self.axis = flow_axis(self.case, self.observable.axis)
+        self.sign = flow_sign(self.case, self.axis)
+        self.length = self.observable.length or unit_cell(self.case, self.axis)
         self.velocity = MeansOverMolecules(len(self.beads), 1, self.everything)
+
+    @property
+    def of(self) -> str:
+        return str(self.observable.of)
 
     def observe(self, fluid: RunningFluid) -> None:
         place = self.sign * self.each(fluid)[:, :, self.axis].mean(axis=1)
@@ -107,7 +107,6 @@ class TransitTimeAccumulator(EventAccumulator):
         plane[ids] += 1
 
     def result(self) -> Result:
-        """The distribution of the times, the mean, and the velocity."""
         drift = drift_of(self.case, self.group, self.kind)
         speed = self.sign * drift.velocity[self.axis] if drift else 0.0
         if drift is None or not speed > 0:
@@ -140,18 +139,15 @@ class TransitTimeAccumulator(EventAccumulator):
         scatter = sum_error(groups @ [by_mean, each / value, by_number])
         return value * more, max(error * more, scatter)
 
-    def comparisons(self, speed: float, note: str) -> Iterator[Comparison]:
-        """Mean time, number, and the velocity that must agree with it."""
+    def comparisons(self, speed: float, drift: str) -> Iterator[Comparison]:
         few = self.note()
         wanted = np.nan if few or not speed > 0 else self.length / speed
-        yield Comparison("mean transit time", *self.mean(), wanted, "tau", few or note)
+        yield Comparison("mean transit time", *self.mean(), wanted, "tau", few or drift)
         yield self.counted()
-        value, error = float(self.velocity.mean()[0]), float(self.velocity.error()[0])
-        along = f"velocity of centres along {AXES[self.axis]}"
-        sign = self.sign
+        (value, error), sign = self.velocity.total(), self.sign
+        along, note = f"velocity of centres along {AXES[self.axis]}", self.velocity.caution()
         known = sign * speed if speed > 0 else np.nan
-        note = "; ".join(filter(None, (note, self.velocity.caution())))
-        yield Comparison(along, sign * value, error, known, "a/tau", note)
+        yield Comparison(along, sign * value, error, known, "a/tau", joined(drift, note))
         if value > 3 * error:
             over = self.length / value
             yield Comparison("length over velocity", over, over * error / value, unit="tau")

@@ -1,4 +1,4 @@
-"""How long chains take through a plane: from the first bead to the last."""
+"""Times that chains take through a plane, from the first bead to the last."""
 
 from collections.abc import Iterator
 from typing import ClassVar, Literal
@@ -12,12 +12,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, flow_sign
 from mesokit.method.mpcd.expected.selection import KIND, molecule_of
-from mesokit.method.mpcd.observe.shared.events import (
-    EventAccumulator,
-    Words,
-    crossing,
-    require_still,
-)
+from mesokit.method.mpcd.observe.shared.events import EventAccumulator, crossing, require_still
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
@@ -50,7 +45,7 @@ class TranslocationTime(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without molecules, and for an axis along which images slide."""
         molecule_of(case, self.quantity, self.kind)
-        axis = self.axis_of(case)
+        axis = flow_axis(case, self.axis)
         require_still(case, axis, "axis")
         if not 0 <= self.position <= case.box.size[axis]:
             raise CaseError(
@@ -58,26 +53,22 @@ class TranslocationTime(Observable):
                 f"{case.box.size[axis]:g}, its length along {AXES[axis]}"
             )
 
-    def axis_of(self, case: Case) -> int:
-        """Number of the axis."""
-        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
-
 
 @accumulator_of(TranslocationTime)
 class TranslocationTimeAccumulator(EventAccumulator):
-    """Where the first and the last bead of each molecule are, and since when it is in a plane.
+    """Places of the first and last bead of each molecule, and since when it is in a plane.
 
     Memory: `time`, `front`, `back`, `plane` (the next to be passed by the last bead), `behind`
     (whether all beads are behind it), `since` (when the first bead passed it; nan if unknown),
     and `failed`, the number of those that drew back.
     """
 
-    def __init__(self, observable: TranslocationTime, case: Case) -> None:
-        words = Words(
-            "translocation-time", observable.label, "translocation time", "translocations"
-        )
-        super().__init__(case, words, "centres", observable.kind, observable.molecules)
-        self.axis = observable.axis_of(case)
+    lasting, events = "translocation time", "translocations"
+
+    def prepare(self) -> None:
+        super().prepare()
+        observable, case = self.observable, self.case
+        self.axis = flow_axis(case, observable.axis)
         self.sign = flow_sign(case, self.axis)
         self.position = self.sign * observable.position
         self.length = observable.length or unit_cell(case, self.axis)
@@ -131,15 +122,12 @@ class TranslocationTimeAccumulator(EventAccumulator):
 
     @property
     def in_vain(self) -> int:
-        """How often a molecule drew back, in all runs."""
         return self.failed + int(self.now["failed"][0] if self.now else 0)
 
     def result(self) -> Result:
-        """The distribution of the times, the mean, and how often it was tried in vain."""
         return self.made(self.comparisons())
 
     def comparisons(self) -> Iterator[Comparison]:
-        """Mean time, number, and the share of the tries that went through."""
         value, error = self.durations.mean()
         yield Comparison("mean translocation time", value, error, unit="tau", note=self.note())
         yield self.counted()

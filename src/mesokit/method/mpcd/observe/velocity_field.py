@@ -1,5 +1,6 @@
 """Map of the mean velocity over two axes."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -27,6 +28,8 @@ class VelocityField(Field):
     quantity: Literal["velocity-field"] = tag("velocity-field")
     asks_transport: ClassVar[bool] = True
     of_built_up_flow: ClassVar[bool] = True
+    drawing = "map"
+    value_label = "velocity"
 
 
 @accumulator_of(VelocityField)
@@ -37,41 +40,32 @@ class VelocityFieldAccumulator(FieldAccumulator):
         super().__init__(observable, case, width=1 + case.box.dimension)
 
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
-        """Mass, then momentum."""
         return np.concatenate([mass[None], momentum])
 
     def result(self) -> Result:
-        """The map, and the steady flow expected."""
         sums, _ = self.blocks.sums()
         mass = np.broadcast_to(sums[:, :1], sums[:, 1:].shape)
         velocity = of_ratio(sums[:, 1:], mass)
         components = np.array(AXES[: self.case.box.dimension])
-        return Result(
-            quantity="velocity-field",
-            drawing="map",
-            name=self.name,
-            x=self.coordinates | {"component": components},
-            value=np.moveaxis(velocity.value, 0, -1),
-            error=np.moveaxis(velocity.error, 0, -1),
-            label="velocity",
+        return self.report(
+            self.coordinates | {"component": components},
+            (np.moveaxis(velocity.value, 0, -1), np.moveaxis(velocity.error, 0, -1)),
+            self.comparisons(sums, velocity),
             units={"value": "a/tau"} | dict.fromkeys(self.coordinates, "a"),
             expected=self.expected(),
             theory="steady flow",
-            comparisons=self.comparisons(sums, velocity),
-            samples=self.blocks.count,
             extra={"bins_per_cell": self.observable.bins_per_cell},
         )
 
-    def comparisons(self, sums: Array, velocity: Estimate) -> tuple[Comparison, ...]:
-        """The Mach number where the flow is fastest."""
+    def comparisons(self, sums: Array, velocity: Estimate) -> Iterator[Comparison]:
         coefficients = setting.transport(self.case)
         if coefficients is None or not setting.driven(self.case) or self.case.box.sheared:
-            return ()
+            return
         speed, error = fastest(sums, velocity)
         if not speed > 0:
-            return ()
+            return
         sound = coefficients.sound_speed
-        return (Comparison("largest Mach number", speed / sound, error / sound, note=ABOVE),)
+        yield Comparison("largest Mach number", speed / sound, error / sound, note=ABOVE)
 
     def expected(self) -> Array | None:
         """The flow where it varies along an axis of the map, else nan."""

@@ -1,6 +1,7 @@
 """Velocity on the centre line behind a body, and how far the fluid flows back there."""
 
 import math
+from collections.abc import Iterator
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -15,6 +16,7 @@ from mesokit.geometry.shape.cylinder import Cylinder
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import Solids, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.method.mpcd.observe.shared.shells import nearest, periodic_lengths
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, fit, of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
@@ -38,6 +40,8 @@ class Wake(Observable):
     quantity: Literal["wake"] = tag("wake")
     of_built_up_flow: ClassVar[bool] = True
     asks_transport: ClassVar[bool] = True
+    drawing = "centreline"
+    units: ClassVar[dict[str, str]] = {"value": "a/tau", "distance": "a"}
     solid: str | None = param(None, doc="name of the body (the first that is no plate unless said)")
     flow: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")
     width: float = param(1.0, doc="width of the strip", unit="a", gt=0)
@@ -64,7 +68,6 @@ class Wake(Observable):
         Standing(self, case)
 
     def body(self, case: Case) -> int | None:
-        """Number of the body in this case."""
         if not case.walls:
             return None
         solids = solids_of(case)
@@ -75,7 +78,7 @@ class Wake(Observable):
 
 
 class Standing:
-    """Where a body stands in the flow: `axis` and `sign` of the flow, the axes `across` that bound
+    """Place of a body in the flow: `axis` and `sign` of the flow, the axes `across` that bound
     the strip, its `middle`, how far its `rear` is from there, its `size`, and the `room` behind."""
 
     def __init__(self, observable: Wake, case: Case) -> None:
@@ -97,7 +100,9 @@ class Standing:
             raise CaseError(f"solid: the middle of {name} is not in it, or it has no rear")
         start = self.middle.copy()
         start[axis] += self.sign * self.rear
-        self.room = _fluid_until(solids, start, axis, self.sign)
+        away, clear = _line(solids, start, axis, self.sign)
+        stops = np.flatnonzero(clear[1:] <= 0)
+        self.room = float(away[stops[0] + 1] if len(stops) else away[-1])
         if not self.room > 0:
             raise CaseError(f"solid: no fluid behind {solids.names[number]}")
 
@@ -114,7 +119,7 @@ def _line(solids: Solids, start: Array, axis: int, sign: float) -> tuple[Array, 
 
 
 def _solid_until(solids: Solids, start: Array, axis: int, sign: float) -> float:
-    """How far the solid reaches; 0 where there is none, infinite where it goes on for ever."""
+    """Distance up to which there is solid; 0 where there is none, infinite where it never ends."""
     away, clear = _line(solids, start, axis, sign)
     if solids.distance(start)[0] > 0:
         return 0.0
@@ -124,29 +129,20 @@ def _solid_until(solids: Solids, start: Array, axis: int, sign: float) -> float:
     return float(away[free[0]] - clear[free[0]])  # the last step went beyond the surface
 
 
-def _fluid_until(solids: Solids, start: Array, axis: int, sign: float) -> float:
-    """How far the fluid reaches behind a surface."""
-    away, clear = _line(solids, start, axis, sign)
-    stops = np.flatnonzero(clear[1:] <= 0)
-    return float(away[stops[0] + 1] if len(stops) else away[-1])
-
-
 @accumulator_of(Wake)
 class WakeAccumulator(BlockAccumulator):
     """Momentum and mass in the bins of the strip, and the momentum of the whole fluid."""
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "whole")
 
-    def __init__(self, observable: Wake, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         self.body = Standing(observable, case)
         reach = min(observable.reach or 5 * self.body.size, self.body.room)
         bins = max(round(reach * observable.bins_per_cell), 1)
         self.edges = np.linspace(0.0, reach, bins + 1)
         self.centres = (self.edges[1:] + self.edges[:-1]) / 2
-        size = np.array(case.box.size, float)
-        closed = setting.closed_axes(case)
-        self.lengths = np.where([k in closed for k in range(len(size))], np.inf, size)
+        self.lengths = periodic_lengths(case)
         self.blocks, self.whole = Blocks((2, bins)), Blocks()
 
     def observe(self, fluid: RunningFluid) -> None:
@@ -163,9 +159,7 @@ class WakeAccumulator(BlockAccumulator):
         length = self.lengths[body.axis]
         if np.isfinite(length):
             behind -= length * np.floor(behind / length)
-        off = r[:, body.across] - body.middle[body.across]
-        lengths = self.lengths[body.across]
-        off -= np.where(np.isfinite(lengths), lengths, 0.0) * np.round(off / lengths)
+        off = nearest(r[:, body.across] - body.middle[body.across], self.lengths[body.across])
         inside = (np.abs(off) <= 0.5 * self.observable.width).all(axis=1)
         inside &= (behind >= 0) & (behind < self.edges[-1])
         bins = len(self.centres)
@@ -174,26 +168,18 @@ class WakeAccumulator(BlockAccumulator):
         return place, [m * (body.sign * some.velocities[inside, body.axis]), m]
 
     def result(self) -> Result:
-        """The velocity behind the body, positive along the flow; distances from its rear."""
         sums, _ = self.blocks.sums()
         velocity = of_ratio(sums[:, 0], sums[:, 1])
         found: list[Comparison] = []
         length = np.nan
         if self.blocks.count and np.isfinite(velocity.value).all():
-            found = self.comparisons(velocity)
+            found = list(self.comparisons(velocity))
             length = next((c.measured for c in found if c.what == "L_r/D"), 0.0) * self.body.size
-        letter = AXES[self.body.axis]
-        return Result(
-            quantity="wake",
-            drawing="centreline",
-            name=self.name,
-            x={"distance": self.centres},
-            value=velocity.value,
-            error=velocity.error,
-            label=f"velocity v_{letter}",
-            units={"value": "a/tau", "distance": "a"},
-            comparisons=tuple(found),
-            samples=self.blocks.count,
+        return self.report(
+            {"distance": self.centres},
+            velocity,
+            found,
+            label=f"velocity v_{AXES[self.body.axis]}",
             extra={
                 "edges": self.edges,
                 "size": self.body.size,
@@ -209,23 +195,19 @@ class WakeAccumulator(BlockAccumulator):
         mass = setting.mass_density(self.case) * float(np.prod(self.case.box.size))
         return float(of_mean(self.whole).value) / mass
 
-    def comparisons(self, velocity: Estimate) -> list[Comparison]:
-        """Velocity next to the rear, and how far the fluid flows back."""
+    def comparisons(self, velocity: Estimate) -> Iterator[Comparison]:
         first = (self.edges[1:] <= 1.0 + 1e-9) * 1.0
         first[0] = 1.0
-        first /= first.sum()
-        value, error = velocity.scalar(first @ velocity.value, first)
-        what = "velocity in the cell behind the body"
-        found = [Comparison(what, value, error, unit="a/tau")]
+        near = velocity.total(first / first.sum())
+        yield Comparison("velocity in the cell behind the body", *near, unit="a/tau")
         crossing = self.crossing(velocity)
-        if crossing is None:
-            return found
-        expected, note = self.expected()
-        value, error = (x / self.body.size for x in crossing)
-        return [*found, Comparison("L_r/D", value, error, expected, "", note)]
+        if crossing is not None:
+            value, error = (x / self.body.size for x in crossing)
+            expected, note = self.expected()
+            yield Comparison("L_r/D", value, error, expected, "", note)
 
     def crossing(self, velocity: Estimate) -> tuple[float, float] | None:
-        """Where the velocity passes zero, and its error; None if the fluid does not flow back.
+        """Place where the velocity passes zero, and its error; None if nothing flows back.
 
         The flux behind the body falls to its minimum there, however noisy the velocity; it has to
         be negative by more than SURE standard errors. The line goes through the bins within a cell,

@@ -1,32 +1,59 @@
 """Force per area on the plates of a slit."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import spring_of
-from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import BlockAccumulator, Observable, State, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
-from mesokit.statistics import Blocks
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
+from mesokit.statistics import Blocks, Tally
 
 PLATES = ("lower", "upper")
 THIN = 1e-5  # of the height: what lies next to a plate
 UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
+
+
+def require_counted(case: Case, quantity: str) -> None:
+    """Raise CaseError where the momentum that walls take is not counted."""
+    if slit_of(case) is not None and case.walls[0].virtual == "top-up":
+        raise CaseError(
+            f"{quantity} is not counted with virtual = 'top-up' in a slit; use 'extrapolate'"
+        )
+
+
+class SinceLast:
+    """Momentum that surfaces (rows, columns) take between one sample and the next."""
+
+    def __init__(self, rows: int, columns: int) -> None:
+        self.shape, self.steps = (rows, columns), 0
+        self.last = Tally((rows * columns,), 1.0)
+
+    def take(self, fluid: RunningFluid) -> tuple[NDArray[np.float64], int]:
+        """Momentum and angular momentum of each, and in how many steps."""
+        now, steps = fluid.wall_tally, fluid.wall_steps - self.steps
+        taken = now.since(self.last).reshape(self.shape)
+        self.last, self.steps = now.copy(), fluid.wall_steps
+        return taken, steps
+
+    def state(self) -> State:
+        return self.last.state() | {"steps": np.array(self.steps)}
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        self.last.restore(state)
+        self.steps = int(state["steps"])
 
 
 @component
@@ -39,9 +66,11 @@ class WallStress(Observable):
     at_any_kT: ClassVar[tuple[str, ...]] = ("on both plates",)
     asks_transport: ClassVar[bool] = True
     measures: ClassVar[tuple[str, ...]] = ("walls",)
+    drawing = "tensor"
+    value_label = "force per area on the plates"
 
     def check(self, case: Case) -> None:
-        """Raise CaseError without walls, or for a second one: it sees what the first left."""
+        """Raise CaseError without the two plates of a slit."""
         if slit_of(case) is None:
             rules = {
                 f"wall[#{i + 1}].{side}.rule = 'diffuse'"
@@ -64,8 +93,8 @@ class WallStressAccumulator(BlockAccumulator):
 
     memory: ClassVar[tuple[str, ...]] = ("blocks", "walls")
 
-    def __init__(self, observable: WallStress, case: Case) -> None:
-        self.case, self.name = case, observable.label
+    def prepare(self) -> None:
+        case = self.case
         plates: Any = case.walls[0]
         self.axis = AXES.index(plates.axis)
         self.area = np.prod(case.box.size) / case.box.size[self.axis]
@@ -80,63 +109,33 @@ class WallStressAccumulator(BlockAccumulator):
             self.blocks.add(momentum / (steps * self.case.fluid.timestep * self.area))
 
     def result(self) -> Result:
-        """Every component at both plates."""
-        expected = self.expected()
-        return Result(
-            quantity="wall-stress",
-            drawing="tensor",
-            name=self.name,
-            x={"plate": np.array(PLATES), "component": np.array(AXES[: self.case.box.dimension])},
-            value=self.blocks.mean(),
-            error=self.blocks.error(),
-            label="force per area on the plates",
+        expected = balance(self.case)
+        return self.report(
+            {"plate": PLATES, "component": AXES[: self.case.box.dimension]},
+            self.blocks,
+            self.comparisons(expected),
             units={"value": UNIT[self.case.box.dimension]},
             expected=expected,
             theory="momentum balance",
-            comparisons=tuple(self.comparisons(expected)) if self.blocks.count else (),
-            samples=self.blocks.count,
             extra={"axis": AXES[self.axis]},
         )
 
-    def expected(self) -> Array:
-        """(2, d): see `balance`."""
-        return balance(self.case)
-
-    def comparisons(self, expected: Array) -> list[Comparison]:
-        """Each plate where the fluid pushes it, and the balance of both."""
-        force = of_mean(self.blocks)
-        found = []
+    def comparisons(self, expected: Array) -> Iterator[Comparison]:
+        force, unit = of_mean(self.blocks), UNIT[self.case.box.dimension]
         for axis, letter in enumerate(AXES[: self.case.box.dimension]):
             what = "pressure on" if axis == self.axis else f"drag along {letter} on"
             for plate, name in enumerate(PLATES):
-                if expected[plate, axis] != 0:
-                    mask = np.zeros(force.value.shape)
+                if (known := expected[plate, axis]) != 0:
                     # a pressure is positive when it pushes outwards
-                    mask[plate, axis] = -1 if axis == self.axis and plate == 0 else 1
-                    error = force.error[plate, axis]
-                    found.append(
-                        Comparison(
-                            f"{what} the {name} plate",
-                            float((mask * force.value).sum()),
-                            float(error),
-                            float(mask[plate, axis] * expected[plate, axis]),
-                            UNIT[self.case.box.dimension],
-                        )
-                    )
+                    sign = -1 if axis == self.axis and plate == 0 else 1
+                    value, error = sign * force.value[plate, axis], force.error[plate, axis]
+                    yield Comparison(f"{what} the {name} plate", value, error, sign * known, unit)
             if axis != self.axis and setting.uniform_acceleration(self.case)[axis]:
                 both = force.residuals[:, :, axis].sum(axis=1)
-                total = type(force)(force.value[:, axis].sum(), both, force.weights)
-                found.append(
-                    Comparison(
-                        f"drag along {letter} on both plates",
-                        float(total.value),
-                        float(total.error),
-                        float(expected[:, axis].sum()),
-                        UNIT[self.case.box.dimension],
-                        "the force on the fluid",
-                    )
-                )
-        return found
+                error = float(force._replace(residuals=both).error)
+                value, known = force.value[:, axis].sum(), expected[:, axis].sum()
+                drag, note = f"drag along {letter} on both plates", "the force on the fluid"
+                yield Comparison(drag, value, error, known, unit, note)
 
 
 def balance(case: Case) -> Array:

@@ -1,1 +1,1 @@
-"""What several observables of fluids need."""
+"""Shared parts of the observables of fluids."""

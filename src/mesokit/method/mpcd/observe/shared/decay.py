@@ -10,34 +10,40 @@ from mesokit.seam.estimate import Estimate
 from mesokit.statistics import MultipleTau
 
 Array = NDArray[np.floating[Any]]
+LOWEST = (0.5, 0.2)  # of the correlation, that a fit looks at: later lags add little but noise
+FEWEST = 4  # lags; the lower limit serves where the sampling is too coarse for the upper one
 DRAWS = 400  # of noise
 BEYOND = 1.4  # times the root mean square of the largest of noise: what is none of it
 
 
-def normalised(correlator: MultipleTau) -> tuple[NDArray[np.int64], Estimate]:
-    """Correlation averaged over all signals over that at lag 0: lags (n,) in samples, and values.
+def averaged(correlator: MultipleTau, scale: float = 1.0) -> tuple[NDArray[np.int64], Estimate]:
+    """Correlation averaged over all signals, times a scale: lags (n,) in samples, and values.
 
     Lags whose averages are longer than a block of time are left out.
     """
-    lags: list[NDArray[np.int64]] = []
-    values, residuals = [], []
-    zero, zero_residual = np.ones(1), np.zeros((0, 1))
-    weights = np.zeros(0)
+    lags: list[NDArray[np.int64]] = [np.zeros(0, np.int64)]
+    values, weights = [np.zeros(0)], np.zeros(0)
+    residuals: list[Array] = []
     for lag, sums, counts in correlator.products(within_blocks=True):
         sums = sums.reshape(*sums.shape[:2], -1).mean(axis=-1)
         total = counts.sum(axis=0)
         mean = sums.sum(axis=0) / total
-        residual = (sums - mean * counts) / total
-        if not lags:
-            zero, zero_residual, weights = mean[:1], residual[:, :1], counts[:, 0]
+        weights = weights if residuals else counts[:, 0]
         lags.append(lag)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            values.append(mean / zero)
-            residuals.append((residual - mean / zero * zero_residual) / zero)
-    if not lags:
-        return np.zeros(0, np.int64), Estimate(np.zeros(0), np.zeros((0, 0)), weights)
-    joined = Estimate(np.concatenate(values), np.concatenate(residuals, axis=1), weights)
-    return np.concatenate(lags), joined
+        values.append(scale * mean)
+        residuals.append(scale * (sums - mean * counts) / total)
+    each = np.concatenate(residuals, axis=1) if residuals else np.zeros((0, 0))
+    return np.concatenate(lags), Estimate(np.concatenate(values), each, weights)
+
+
+def normalised(correlator: MultipleTau) -> tuple[NDArray[np.int64], Estimate]:
+    """The same over that at lag 0."""
+    lags, found = averaged(correlator)
+    zero, zero_residual = found.value[:1], found.residuals[:, :1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value = found.value / zero
+        residuals = (found.residuals - value * zero_residual) / zero
+    return lags, found._replace(value=value, residuals=residuals)
 
 
 def largest_error(off: Array, curve: Estimate) -> float:
@@ -84,3 +90,19 @@ def fit_curve(
     ]
     matrix = np.linalg.pinv(np.stack(slopes, axis=1))
     return Estimate(parameters, curve.residuals[:, use] @ matrix.T, curve.weights)
+
+
+def fit_decay(
+    time: Array, curve: Estimate, late: NDArray[np.bool_], below: float = np.inf
+) -> Estimate | None:
+    """Rate and amplitude (2,) of an exponential, fitted to the points that are `late` enough, as
+    far as the correlation is above noise; None where these are too few, or end above `below`."""
+    for lowest in LOWEST:
+        noise = np.flatnonzero(~(curve.value > lowest))
+        use = (np.arange(len(time)) < (noise[0] if len(noise) else len(time))) & late
+        if use.sum() >= FEWEST:
+            break
+    if use.sum() < 3 or curve.value[use][-1] >= below:
+        return None
+    start = [-np.log(curve.value[use][-1]) / time[use][-1], 1.0]
+    return fit_curve(time, curve, lambda t, rate, size: size * np.exp(-rate * t), start, use)

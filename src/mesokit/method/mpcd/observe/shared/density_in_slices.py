@@ -1,5 +1,6 @@
 """The density of an MPCD fluid, or of molecules in it, in slices."""
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import springs_of
 from mesokit.method.mpcd.expected.selection import Group, group_of, kind_of
-from mesokit.method.mpcd.expected.traps import held, trapped
+from mesokit.method.mpcd.expected.traps import held, squares_from_middle, trapped
 from mesokit.observe.shared.profile import Array, Compared, ProfileAccumulator
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate
@@ -49,10 +50,7 @@ class DensityInSlices:
         if self.everything:
             return profile.moments(fluid)[0][None]
         first, last = self.group.first, self.group.first + self.group.number * self.group.length
-
-        def slices(some: Some) -> Terms:
-            return self.slices(profile, some)
-
+        slices = functools.partial(self.slices, profile)
         return fluid.sums_of_particles(slices, profile.bins, [1.0], first, last)
 
     def slices(self, profile: ProfileAccumulator, some: Some) -> Terms:
@@ -79,14 +77,15 @@ class DensityInSlices:
             if self.trapped:
                 found.append(self.spread(profile, density, expected))
             elif not profile.periodic:
-                cell = profile.observable.bins_per_cell
+                cell, unit = profile.observable.bins_per_cell, self.case.box.density_unit
                 for name, part in (("lower", slice(0, cell)), ("upper", slice(-cell, None))):
                     mean = np.zeros(profile.bins)
                     mean[part] = 1 / cell
-                    value, error = density.scalar(mean @ density.value, mean)
-                    where = f"density in the cell at the {name} plate"
-                    wanted, unit = float(mean @ expected), self.case.box.density_unit
-                    found.append(Comparison(where, value, error, wanted, unit))
+                    where, known = (
+                        f"density in the cell at the {name} plate",
+                        float(mean @ expected),
+                    )
+                    found.append(Comparison(where, *density.total(mean), known, unit))
         return Compared(expected, self.legend(profile), found)
 
     @property
@@ -97,15 +96,12 @@ class DensityInSlices:
     def spread(self, profile: ProfileAccumulator, density: Estimate, expected: Array) -> Comparison:
         """Mean square distance from the expected middle, by the shorter way round the box."""
         length, share = profile.edges[-1], expected / expected.sum()
-        turns = np.angle(share @ np.exp(2j * np.pi * profile.centres / length))
-        away = profile.centres - turns * length / (2 * np.pi)
-        square = (away - length * np.rint(away / length)) ** 2 / expected.sum()
-        value, error = density.scalar(square @ density.value, square)
+        square = squares_from_middle(profile.centres, share, length) / expected.sum()
         what = f"mean square distance from the middle of the traps along {profile.observable.axis}"
-        return Comparison(what, value, error, float(square @ expected), "a^2")
+        return Comparison(what, *density.total(square), square @ expected, "a^2")
 
     def legend(self, profile: ProfileAccumulator) -> str:
-        """What the theory is called in a figure."""
+        """Name of the theory in a figure."""
         if self.trapped:
             return "Boltzmann in traps"
         walls = self.group.molecule is not None and not profile.periodic
@@ -119,9 +115,8 @@ class DensityInSlices:
             return None
         if self.trapped:
             return self.expected_in_traps(profile)
-        weight = (
-            0.0 if profile.periodic else float(setting.uniform_acceleration(case)[profile.axis])
-        )
+        acceleration = setting.uniform_acceleration(case)
+        weight = 0.0 if profile.periodic else float(acceleration[profile.axis])
         solutes = None if group.first < case.particles else case.solutes
         kind = solutes.index_of(self.kind) if solutes else 0
         mass = solutes.masses[kind] if solutes else case.fluid.mass

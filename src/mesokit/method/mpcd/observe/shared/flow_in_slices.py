@@ -1,6 +1,7 @@
 """The steady flow of an MPCD fluid in slices, and the fit that suits it."""
 
-from collections.abc import Iterator
+import functools
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,6 @@ class FlowInSlices:
         return flowing[0] if len(flowing) == 1 else "y" if self.observable.axis == "x" else "x"
 
     def warnings(self) -> Iterator[str]:
-        """A component along which nothing flows."""
         yield from setting.across_the_flow(self.case, self.observable.component)
 
     def compared(self, profile: ProfileAccumulator, velocity: Estimate, sums: Array) -> Compared:
@@ -77,13 +77,10 @@ class Seen:
         if expected is None or not viscous:
             return {}
         part = setting.loop(self.case)
-        if part < 0.002 or np.any(self.moving()):
+        moving = slit_of(self.case) is not None and np.any(self.plates())
+        if part < 0.002 or moving:
             return {}
         return {"raised": expected / (1 + part), "raised_by": np.array(100 * part)}
-
-    def moving(self) -> tuple[float, float]:
-        """Velocities of the plates, if there are any."""
-        return (0.0, 0.0) if slit_of(self.case) is None else self.plates()
 
     def powers(self, degree: int) -> Array:
         """Bin averages of 1, t, t^2 about the middle of the box, (bins, degree + 1)."""
@@ -104,12 +101,12 @@ class Seen:
         return coefficients.viscosity if coefficients else np.nan
 
     def viscosity_note(self, error: float) -> str:
-        """Why that of the theory is not this fluid's, or is off by more than the error bar."""
+        """Reason for which the theory is off by more than the error bar."""
         caveat = setting.caveat(self.case)
         return caveat or setting.chaos_is_off(self.case, self.expected_viscosity(), error)
 
     def short_run(self, viscosity: float) -> str:
-        """Where blocking cannot see the slowest eddies, which live H^2/(pi^2 nu): a note."""
+        """Caveat of a run that is short against the life H^2/(pi^2 nu) of the slowest eddies."""
         blocks, step = self.profile.blocks, self.case.fluid.timestep
         time = blocks.count / blocks.series * self.profile.observable.every * step
         times = time * np.pi**2 * viscosity / self.edges[-1] ** 2
@@ -118,20 +115,20 @@ class Seen:
         return of_relaxations(times, blocks.series)
 
     def plates(self) -> tuple[float, float]:
-        """Velocities of the lower and the upper plate."""
         wall = slit_of(self.case)
         assert wall is not None  # only such flows are fitted so
-        lower, upper = (
-            setting.surface_velocity(s, self.component) for s in (wall.lower, wall.upper)
-        )
-        return lower, upper
+        velocity, axis = setting.surface_velocity, self.component
+        return velocity(wall.lower, axis), velocity(wall.upper, axis)
 
 
 Fitted = tuple[Array, list[Comparison]]
 
 
-def _poiseuille(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
-    """Parabola c0 + c1 t + c2 t^2: viscosity from the curvature, slip from where it meets walls."""
+def _poiseuille(seen: Seen, velocity: Estimate, mass: Array, half: bool = False) -> Fitted:
+    """Parabola c0 + c1 t + c2 t^2: viscosity from the curvature, slip from where it meets walls.
+
+    With one slip plate (`half`) only the curvature.
+    """
     basis = seen.powers(2)
     parabola = fit(velocity, basis, mass * seen.inside())
     c0, _, c2 = parabola.value
@@ -142,40 +139,21 @@ def _poiseuille(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
         over=(c2, np.eye(3)[2]),
     )
     short = seen.short_run(seen.expected_viscosity() if np.isnan(value) else value)
-    found = [
-        Comparison(
-            "viscosity from curvature",
-            value,
-            error,
-            seen.expected_viscosity(),
-            VISCOSITY,
-            noted(value, seen.viscosity_note(error), short) or "independent of slip",
-            inverse=True,
-        )
-    ]
+    known = seen.expected_viscosity()
+    note = noted(value, seen.viscosity_note(error), short) or "independent of slip"
+    found = [Comparison("viscosity from curvature", value, error, known, VISCOSITY, note, True)]
+    if half:
+        return basis @ parabola.value, found
     quarter = seen.edges[-1] ** 2 / 4
     wall = sum(seen.plates()) / 2
     centre, slip = c0 - wall, c0 + quarter * c2 - wall
     share = slip / centre
     gradient = np.array([1 - share, 0, quarter]) / centre
     value, error = parabola.scalar(100 * share, 100 * gradient, over=(centre, np.eye(3)[0]))
-    found.append(
-        Comparison(
-            "slip at the walls",
-            value,
-            error,
-            0.0,
-            "% of the centre velocity",
-            noted(value, setting.slipping(seen.case), short) or "no slip",
-        )
-    )
+    note = noted(value, setting.slipping(seen.case), short) or "no slip"
+    unit = "% of the centre velocity"
+    found.append(Comparison("slip at the walls", value, error, 0.0, unit, note))
     return basis @ parabola.value, found
-
-
-def _half_poiseuille(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
-    """The same with one slip plate: only the curvature."""
-    curve, found = _poiseuille(seen, velocity, mass)
-    return curve, found[:1]
 
 
 def _couette(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
@@ -187,21 +165,16 @@ def _couette(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
     difference, slips = upper - lower, setting.slipping(seen.case)
     short = seen.short_run(seen.expected_viscosity())
     note = noted(slope, slips, short)
+    found = Comparison("shear rate", slope, error, difference / height, "1/tau", note)
+    slip, spread = 50 * (1 - slope * height / difference), 50 * error * height / abs(difference)
+    unit, note = "% of the velocity difference", note or "mean of both plates"
     return basis @ line.value, [
-        Comparison("shear rate", slope, error, difference / height, "1/tau", note),
-        Comparison(
-            "slip at the walls",
-            50 * (1 - slope * height / difference),
-            50 * error * height / abs(difference),
-            0.0,
-            "% of the velocity difference",
-            note or "mean of both plates",
-        ),
+        found,
+        Comparison("slip at the walls", slip, spread, 0.0, unit, note),
     ]
 
 
 def _lees_edwards(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
-    """Straight line: its slope."""
     basis = seen.powers(1)
     line = fit(velocity, basis, mass)
     slope, error = line.scalar(line.value[1], np.array([0.0, 1.0]))
@@ -220,22 +193,14 @@ def _kolmogorov(seen: Seen, velocity: Estimate, mass: Array) -> Fitted:
     amplitude = wave.value[1]
     nu = force.amplitude / (amplitude * k**2)
     value, error = wave.scalar(nu, np.array([0, -nu / amplitude]), over=(amplitude, np.eye(2)[1]))
-    return basis @ wave.value, [
-        Comparison(
-            "viscosity from amplitude",
-            value,
-            error,
-            seen.expected_viscosity(),
-            VISCOSITY,
-            noted(value, seen.viscosity_note(error)) or "steady",
-            inverse=True,
-        )
-    ]
+    what, known = "viscosity from amplitude", seen.expected_viscosity()
+    note = noted(value, seen.viscosity_note(error)) or "steady"
+    return basis @ wave.value, [Comparison(what, value, error, known, VISCOSITY, note, True)]
 
 
-FITS = {
+FITS: dict[str, Callable[[Seen, Estimate, Array], Fitted]] = {
     "poiseuille": _poiseuille,
-    "half poiseuille": _half_poiseuille,
+    "half poiseuille": functools.partial(_poiseuille, half=True),
     "couette": _couette,
     "lees-edwards": _lees_edwards,
     "kolmogorov": _kolmogorov,

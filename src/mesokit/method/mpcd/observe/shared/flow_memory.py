@@ -1,4 +1,4 @@
-"""How long the momentum of a driven flow is remembered, and what that leaves of its error bar."""
+"""Relaxation time of the momentum of a driven flow, and the error bar that a short run leaves."""
 
 import math
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from mesokit.case.case import Case
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.numbers import TIMES
-from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.method.mpcd.observe.shared.tensor import kept
 from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.method import BuildUp
 from mesokit.statistics import Blocks
@@ -35,7 +35,7 @@ class FlowMemory(NamedTuple):
 
     @property
     def note(self) -> str:
-        """Where blocking cannot see how slowly the flow changes: a caveat."""
+        """Caveat of a run that is short against the relaxation time."""
         if not self.times < ENOUGH:
             return ""
         return of_relaxations(self.times, self.runs)
@@ -82,8 +82,8 @@ def _relaxation(given: float, had: float, length: float) -> float:
 
 
 def build_up_of(memory: FlowMemory, case: Case) -> BuildUp | None:
-    """How the flow came from rest, by the largest momentum that it may well have; None where no
-    force gives it."""
+    """Build-up of the flow from rest, by the largest momentum that it may well have; None where
+    no force gives it."""
     if np.isnan(memory.time) or case.fluid.start.run is not None or not case.fluid.force.steady:
         return None
     steps = memory.longest / case.fluid.timestep

@@ -1,10 +1,11 @@
-"""What transverse and longitudinal modes share: wave vectors, polarisations and correlators."""
+"""Base of transverse and longitudinal modes: wave vectors, polarisations and correlators."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+import itertools
+from abc import abstractmethod
+from collections.abc import Iterable
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +16,9 @@ from mesokit.case.component import component, param
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State, pack, unpack
-from mesokit.seam.result import Comparison
-from mesokit.statistics import MultipleTau
+from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.result import Comparison, Result
+from mesokit.statistics import Correlation, MultipleTau
 
 Array = NDArray[np.floating[Any]]
 SHOWN = 6  # wave numbers in the comparisons, longest waves first
@@ -59,30 +60,29 @@ class Modes(Observable):
                     )
 
 
-class Shell(NamedTuple):
-    """Wave vectors of the same length and their correlator."""
+class ModesAccumulator(BlockAccumulator):
+    """One correlator for each length of wave vector, of the velocity along `polarise`."""
 
-    wavenumber: float
-    members: NDArray[np.int64]
-    correlator: MultipleTau
+    memory: ClassVar[tuple[str, ...]] = ("correlators",)
 
-
-class ModesAccumulator(ABC):
-    """One correlator for each length of wave vector; `polarisations` (K, p, d) say what it sees."""
-
-    def __init__(self, observable: Modes, case: Case) -> None:
-        self.observable, self.case, self.name = observable, case, observable.label
+    def prepare(self) -> None:
+        observable, case = self.observable, self.case
         vectors = observable.vectors(case)
         self.wavevectors = 2 * np.pi * vectors / np.array(case.box.size, float)
-        self.polarisations = np.array([self.polarise(k) for k in self.wavevectors])
+        self.polarisations = np.array([self.polarise(k) for k in self.wavevectors])  # (K, p, d)
         lengths = np.round(np.linalg.norm(self.wavevectors, axis=1), 9)
         max_lag = None if observable.max_lag is None else observable.max_lag // observable.every
-        self.shells = []
-        for length in np.unique(lengths):
-            members = np.flatnonzero(lengths == length)
+        self.wavenumbers = np.unique(lengths)
+        self.members = [np.flatnonzero(lengths == length) for length in self.wavenumbers]
+        self.correlators = {}
+        for i, members in enumerate(self.members):
             shape = (len(members), self.polarisations.shape[1])
-            correlator = MultipleTau(shape, dtype=complex, max_lag=max_lag)
-            self.shells.append(Shell(float(length), members, correlator))
+            self.correlators[f"shell_{i}"] = MultipleTau(shape, dtype=complex, max_lag=max_lag)
+
+    @property
+    def shells(self) -> list[tuple[float, MultipleTau]]:
+        """Each wave number and its correlator."""
+        return list(zip(self.wavenumbers.tolist(), self.correlators.values(), strict=True))
 
     @abstractmethod
     def polarise(self, wavevector: Array) -> Array:
@@ -91,56 +91,52 @@ class ModesAccumulator(ABC):
     def observe(self, fluid: RunningFluid) -> None:
         _, momentum = fluid.modes(self.wavevectors)
         amplitude = np.einsum("kpd,kd->kp", self.polarisations, momentum)
-        for shell in self.shells:
-            shell.correlator.add(amplitude[shell.members])
-
-    def state(self) -> State:
-        return pack(**{f"shell_{i}": shell.correlator for i, shell in enumerate(self.shells)})
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        self.shells = [
-            shell._replace(correlator=MultipleTau.from_state(unpack(state, f"shell_{i}")))
-            for i, shell in enumerate(self.shells)
-        ]
-
-    def pool(self, other: ModesAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        for own, others in zip(self.shells, other.shells, strict=True):
-            own.correlator.pool(others.correlator)
-
-    @property
-    def wavenumbers(self) -> Array:
-        """Lengths of the wave vectors, (shells,)."""
-        return np.array([shell.wavenumber for shell in self.shells])
+        for members, correlator in zip(self.members, self.correlators.values(), strict=True):
+            correlator.add(amplitude[members])
 
     def interval(self) -> float:
-        """Time between two samples."""
         return self.observable.every * self.case.fluid.timestep
 
-    def curves(self) -> tuple[Array, Array, Array]:
-        """Time (n,), normalised correlation and error (n, shells)."""
+    def curves(self) -> tuple[Array, list[Correlation]]:
+        """Time (n,), and the normalised correlation of each wave number."""
         every = [
-            shell.correlator.correlation(average_over=(0, 1), normalised=True)
-            for shell in self.shells
+            correlator.correlation(average_over=(0, 1), normalised=True)
+            for correlator in self.correlators.values()
         ]
-        value = np.stack([c.value for c in every], axis=1)
-        error = np.stack([c.error for c in every], axis=1)
-        return every[0].lag * self.interval(), value, error
+        return every[0].lag * self.interval(), every
+
+    def modes(self, fits: Iterable[Comparison], theory: str) -> Result:
+        """The correlations beside a theory of this name, and what is fitted to them."""
+        time, every = self.curves()
+        first = self.equipartition() if self.undisturbed() else None
+        return self.report(
+            {"time": time, "wavenumber": self.wavenumbers},
+            every,
+            itertools.chain(fits, [first]),
+            expected=self.law(time),
+            theory=theory,
+            samples=self.samples,
+            extra=self.smooth(time),
+        )
+
+    @property
+    def samples(self) -> int:
+        return self.shells[0][1].count
 
     def equipartition(self) -> Comparison | None:
         """Mean square of all modes against N m kT."""
         fluid = self.case.fluid
         total = setting.mass_density(self.case) * np.prod(self.case.box.size) * fluid.kT
         values, variances = [], []
-        for shell in self.shells:
-            found = shell.correlator.correlation(average_over=(0, 1))
+        for correlator in self.correlators.values():
+            found = correlator.correlation(average_over=(0, 1))
             if not len(found.value):
                 return None
             values.append(found.value[0])
             variances.append(found.error[0] ** 2)
         mean, error = np.mean(values) / total, np.sqrt(np.sum(variances)) / len(values) / total
-        error = setting.with_start(self.case, float(error), 1.0, self.shells[0].correlator.series)
-        return Comparison("mean square of the modes", float(mean), error, 1.0, "N m kT")
+        error = setting.with_start(self.case, error, 1.0, self.shells[0][1].series)
+        return Comparison("mean square of the modes", mean, error, 1.0, "N m kT")
 
     @abstractmethod
     def law(self, time: Array) -> Array | None:

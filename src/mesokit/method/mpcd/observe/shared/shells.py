@@ -1,4 +1,4 @@
-"""What profiles in shells share: particles are sorted by a distance, not by a coordinate."""
+"""Base of profiles in shells: particles are sorted by a distance, not by a coordinate."""
 
 import math
 from abc import abstractmethod
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.case import Case
+from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.mode_chi_square import mode_chi_square
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, of_mean, of_ratio
@@ -22,14 +23,17 @@ NUMBER, MASS, ENERGY, MOMENTUM = 0, 1, 2, 3  # rows of the sums; momentum and wh
 class ShellAccumulator(BlockAccumulator):
     """Block sums of number, mass, m v^2 and momentum along some directions in each shell."""
 
-    def __init__(self, case: Case, edges: Array, directions: int) -> None:
-        self.case, self.edges, self.dimension = case, edges, case.box.dimension
-        self.centres, self.bins = (edges[1:] + edges[:-1]) / 2, len(edges) - 1
-        self.blocks = Blocks((MOMENTUM + directions, self.bins))
+    def prepare_shells(self, inner: float, outer: float) -> None:
+        """Make the sums, of shells of equal width and at least one."""
+        per_cell, self.dimension = self.observable.bins_per_cell, self.case.box.dimension
+        self.bins = max(round((outer - inner) * per_cell), 1)
+        self.edges = np.linspace(inner, outer, self.bins + 1)
+        self.centres = (self.edges[1:] + self.edges[:-1]) / 2
+        self.blocks = Blocks((MOMENTUM + self.dimension, self.bins))
 
     @abstractmethod
     def locate(self, r: Array) -> tuple[Array, Array]:
-        """The distance (n,) of each particle, and what `along` has to know of its place (n, d).
+        """Distance (n,) of each particle, and a vector (n, d) of its place that `along` needs.
 
         By its own row alone, as what `along` does: particles come in pieces, which are others for
         another number of processes.
@@ -40,14 +44,9 @@ class ShellAccumulator(BlockAccumulator):
         """Velocities (directions, n), the first d of them along directions at right angles."""
 
     def observe(self, fluid: RunningFluid) -> None:
-        self.blocks.add(fluid.sums_of_particles(self.terms, self.bins, self.units))
-
-    @property
-    def units(self) -> list[float]:
-        """About the size of each term."""
-        fluid, directions = self.case.fluid, self.blocks.shape[0] - MOMENTUM
-        momentum = math.sqrt(fluid.mass * fluid.kT)
-        return [1.0, fluid.mass, fluid.kT, *[momentum] * directions]
+        mass, kT = self.case.fluid.mass, self.case.fluid.kT
+        units = [1.0, mass, kT, *[math.sqrt(mass * kT)] * self.dimension]  # about the size of each
+        self.blocks.add(fluid.sums_of_particles(self.terms, self.bins, units))
 
     def terms(self, some: Some) -> Terms:
         """Shells of those particles that are in one, and what each adds there."""
@@ -98,9 +97,15 @@ class ShellAccumulator(BlockAccumulator):
         return mode_chi_square(scaled, expected * root, periodic=False, note=note)
 
 
-def shell_edges(inner: float, outer: float, per_cell: int) -> Array:
-    """Shells of equal width, about `per_cell` in a cell and at least one."""
-    return np.linspace(inner, outer, max(round((outer - inner) * per_cell), 1) + 1)
+def periodic_lengths(case: Case) -> Array:
+    """Length of the box along each axis, infinite where walls close it."""
+    closed = np.isin(range(case.box.dimension), list(setting.closed_axes(case)))
+    return np.where(closed, np.inf, np.array(case.box.size, float))
+
+
+def nearest(away: Array, lengths: Array) -> Array:
+    """Vectors (n, k) to the nearest image, of periods (k,) that may be infinite."""
+    return away - np.where(np.isfinite(lengths), lengths, 0.0) * np.round(away / lengths)
 
 
 def shell_volumes(

@@ -98,7 +98,7 @@ class TemperatureInSlices:
         return squares
 
     def note(self, profile: ProfileAccumulator) -> str:
-        """What is known to be missing from the expected temperature, if it is above 0.01 %."""
+        """Effects missing from the expected temperature, if they are above 0.01 %."""
         if self.heated:
             return f"approximate: molecular chaos, within some {ACCURACY:g} % of the rise"
         missing = CORRELATIONS * self.case.fluid.mass * float(np.mean(self.shear2(profile)))
