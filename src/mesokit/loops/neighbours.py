@@ -39,12 +39,13 @@ def outdated(noted, column, threads, slip, skin):
 
 @scalar
 def insert(lists, i, length, number):
-    """Insert a number into list i, which is in order and so long."""
+    """Insert a number into list i, which is in order and so long; returns its new length."""
     place = length
     while place > 0 and lists[i, place - 1] > number:
         lists[i, place] = lists[i, place - 1]
         place -= 1
     lists[i, place] = number
+    return length + 1
 
 
 def inverse_lengths(size: Iterable[float], closed: Iterable[bool]) -> tuple[float, ...]:

@@ -19,7 +19,7 @@ from mesokit.method.mpcd.engine.beads.state import AROUND, OWN, bead_of, number_
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.scalar.elementary import rint
 from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.jit import by_type, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 CROWDED = -1  # the length of a list that did not fit
@@ -98,31 +98,6 @@ def offset_of_images(box):
     return (lambda box: box.offset) if box.instance_class in SLIDING else (lambda box: 0.0)
 
 
-@scalar
-def slipped(lists, box, thread):
-    """The displacement of the images since the lists were made, along x."""
-    moved = offset_of_images(box) - lists.noted[thread, OFFSET]
-    return moved - rint(moved * box.inverse[0]) * box.size[0]
-
-
-@scalar
-def note_moves(lists, halo, box, thread, places, share_of, zero):
-    """Note the longest displacement of this thread's beads, relative to their surroundings."""
-    (first, last), slip, farthest = share_of, slipped(lists, box, thread), 0.0
-    # Displacements since the lists were made. Under shear images slide meanwhile: for a
-    # bead that was `boxes` images up along y, as many slips are taken off along x.
-    for n in range(first, last):
-        i = bead_of(halo, AROUND, n)
-        at = np.uint64(i * len(zero))
-        moved = added_scaled(
-            load_values(places, at, zero), -1.0, load_values(lists.made_at, at, zero)
-        )
-        moved = with_item(moved, 0, moved[0] - lists.boxes[i] * slip)
-        square = dot(moved, moved)
-        farthest = max(farthest, square if square >= 0.0 else np.inf)  # lost beads too
-    lists.noted[thread, MOVED] = farthest
-
-
 @by_type
 def refresh(worker, lists, halo, box, places, zero):
     """Make the lists anew if they may miss a pair; nothing without a pair potential."""
@@ -131,15 +106,28 @@ def refresh(worker, lists, halo, box, places, zero):
 
 def _refresh(worker, lists, halo, box, places, zero):
     (lists,) = lists
-    every = len(lists.cell)
+    every, noted, farthest = len(lists.cell), lists.noted[worker.thread], 0.0
     around = share(number_of(halo, every, AROUND), worker.thread, worker.threads)
-    note_moves(lists, halo, box, worker.thread, places, around, zero)
+    slip = offset_of_images(box) - noted[OFFSET]
+    slip -= rint(slip * box.inverse[0]) * box.size[0]
+    # Displacements since the lists were made, relative to the surroundings. Under shear images
+    # slide meanwhile: of a bead that was `boxes` images up along y, as many slips are taken off.
+    for n in range(around[0], around[1]):
+        i = bead_of(halo, AROUND, n)
+        at = np.uint64(i * len(zero))
+        before = load_values(lists.made_at, at, zero)
+        moved = added_scaled(load_values(places, at, zero), -1.0, before)
+        moved = with_item(moved, 0, moved[0] - lists.boxes[i] * slip)
+        square = dot(moved, moved)
+        farthest = max(farthest, square if square >= 0.0 else np.inf)  # lost beads too
+    noted[MOVED] = farthest
     barrier(worker)
-    slip, made = abs(slipped(lists, box, worker.thread)), lists.noted[worker.thread, MADE] != 0.0
-    if not made or outdated(lists.noted, MOVED, worker.threads, slip, lists.skin):
+    # All threads come to the same answer, so that all make lists or none.
+    old = outdated(lists.noted, MOVED, worker.threads, abs(slip), lists.skin)
+    if noted[MADE] == 0.0 or old:
         find_cells(lists, halo, box, places, around, zero)
-        lists.noted[worker.thread, OFFSET] = offset_of_images(box)
-        lists.noted[worker.thread, MADE] = 1.0
+        noted[OFFSET] = offset_of_images(box)
+        noted[MADE] = 1.0
         barrier(worker)
         link(lists, halo, share(len(lists.head), worker.thread, worker.threads))
         barrier(worker)
@@ -194,8 +182,6 @@ def make_list(lists, box, places, i, zero):
         while j >= 0:
             separation = apart(box, mine, load_values(places, np.uint64(j * d), zero))
             if j != i and dot(separation, separation) <= square:
-                if found < most:
-                    insert(lists.near, i, found, j)
-                found += 1
+                found = insert(lists.near, i, found, j) if found < most else found + 1
             j = lists.following[j]
     lists.count[i] = found if found <= most else CROWDED

@@ -11,6 +11,7 @@ import numpy as np
 
 from mesokit.case.box import fold
 from mesokit.kernels.part import stage
+from mesokit.loops.neighbours import insert
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.neighbours import MADE
 from mesokit.method.mpcd.engine.beads.state import (
@@ -159,17 +160,6 @@ def owner_or_own(shared, place):
     """The partner that owns a cell; NO_OWNER if this rank owns it, or no partner does."""
     owner, _ = owner_of(shared, place)
     return NO_OWNER if in_block(shared.limits, place) else owner
-
-
-@scalar
-def insert(numbers, which, number, i):
-    """Put an id into an ordered list; returns the length of the list."""
-    place = number
-    while place > 0 and numbers[which, place - 1] > i:
-        numbers[which, place] = numbers[which, place - 1]
-        place -= 1
-    numbers[which, place] = i
-    return number + 1
 
 
 @scalar
