@@ -155,7 +155,7 @@ def list_runs(axes, starts, cell, runs):
 @inner
 def look(physics, seen, starts, near, runs, cell, pattern):
     """Add up the sums of all birds of a cell, in which there are some."""
-    begin, end = starts[cell], starts[cell + 1]
+    begin, end, d = starts[cell], starts[cell + 1], len(pattern)
     for k in range(sum_rows(physics)):
         for i in range(begin, end):
             seen.sums[k, i] = 0
@@ -173,19 +173,14 @@ def look(physics, seen, starts, near, runs, cell, pattern):
             run += 1
             first = runs[0, run]
         if (held == CHUNK) | (run == number):
-            see(physics, seen, near, held, begin, end, pattern)
+            if asks_number(physics):
+                for j in range(held):
+                    near[2 * d, j] = _ONE
+            # Lanes that only fill up the last vector hold no bird and add nothing.
+            for k in range(d, len(near)):
+                for lane in range(LANES):
+                    near[k, past(held, lane)] = _NONE
+            top = (held + LANES - 1) // LANES * LANES
+            for i in range(begin, end):
+                add_seen(physics, near, top, place_of(seen.places, i, pattern), seen.sums, i)
             held = 0
-
-
-@scalar
-def see(physics, seen, near, held, begin, end, pattern):
-    """Add the birds near to the sums of the birds of a cell; lanes without a bird add nothing."""
-    d, top = len(pattern), (held + LANES - 1) // LANES * LANES
-    if asks_number(physics):
-        for j in range(held):
-            near[2 * d, j] = _ONE
-    for k in range(d, len(near)):
-        for lane in range(LANES):
-            near[k, past(held, lane)] = _NONE
-    for i in range(begin, end):
-        add_seen(physics, near, top, place_of(seen.places, i, pattern), seen.sums, i)

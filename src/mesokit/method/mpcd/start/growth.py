@@ -59,19 +59,22 @@ def grown(
     limits = np.array(
         [[nearest_of(pair.kernel(), kT) if pair else 0.0 for pair in row] for row in solutes.pairs]
     )
-    there, before = Placed(solutes.kinds(), box, periods, limits), 0
+    there, before = Placed(solutes.kinds(), box, periods, limits, in_fluid), 0
     # Molecule by molecule, in the order of ids, each among those that are already there. Random
     # numbers follow from the seed and the molecule.
     for kind, polymer in enumerate(solutes.polymers):
-        molecule = solutes.molecule(kind)
-        pool = np.zeros((1, len(box)))
+        molecule, pool = solutes.molecule(kind), np.zeros((1, len(box)))
         if molecule:
             first = FIRST_OF_POOLS + POOL * kind
-            draws = Draws(seed, INITIAL_SOLUTES, np.arange(first, first + POOL))
-            pool = _pool(molecule, kT, len(box), draws)
+            random = Draws(seed, INITIAL_SOLUTES, np.arange(first, first + POOL))
+            pool = first_bonds(molecule, kT, len(box), random)
+            if molecule.bending is not None:  # bonds that follow a bond along x
+                along_x = np.tile(np.eye(len(box))[0], (POOL, 1))
+                pool = turned(molecule, along_x, pool, kT, random)
         for number in range(polymer.number):
-            random = Draws(seed, INITIAL_SOLUTES, [before + number])
-            if not _place(there, molecule, pool, kT, random, in_fluid):
+            if not _place(
+                there, molecule, pool, kT, Draws(seed, INITIAL_SOLUTES, [before + number])
+            ):
                 raise RunError(
                     f"solutes.polymers[#{kind + 1}].number = {polymer.number}: no place for "
                     f"molecule {number + 1} in {TRIES} tries; expected fewer or smaller molecules, "
@@ -81,21 +84,8 @@ def grown(
     return there.places
 
 
-def _pool(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
-    """Bonds: in any direction or, of stiff molecules, that follow a bond along x."""
-    bonds = first_bonds(molecule, kT, d, random)
-    if molecule.bending is None:
-        return bonds
-    return turned(molecule, np.tile(np.eye(d)[0], (POOL, 1)), bonds, kT, random)
-
-
 def _place(
-    there: Placed,
-    molecule: Molecule | None,
-    pool: Floats,
-    kT: float,
-    random: Draws,
-    in_fluid: InFluid,
+    there: Placed, molecule: Molecule | None, pool: Floats, kT: float, random: Draws
 ) -> bool:
     """Add a molecule; whether that worked."""
     done, d = there.number, len(there.box)
@@ -104,42 +94,33 @@ def _place(
         if isinstance(molecule, FreeMolecule) and not (molecule.tree and molecule.loops == 0):
             # Springs in equilibrium, as if beads did not feel one another otherwise.
             normal = np.concatenate([random.normals(d) for _ in range(molecule.length)])
-            places = first + phantom(molecule, kT, normal)
-            done_well = _put(there, places, in_fluid, own=True)
+            placed = _put(there, first + phantom(molecule, kT, normal), own=True)
         elif molecule and molecule.topology == "ring":
-            places = first + _polygon(molecule, pool, random)
-            done_well = _put(there, places, in_fluid)
+            placed = _put(there, first + _polygon(molecule, pool, random))
         else:
-            done_well = _grow(there, molecule, pool, first, random, in_fluid)
-        if done_well:
+            placed = _grow(there, molecule, pool, first, random)
+        if placed:
             return True
         there.remove_from(done)
     return False
 
 
 def _grow(
-    there: Placed,
-    molecule: Molecule | None,
-    pool: Floats,
-    first: Floats,
-    random: Draws,
-    in_fluid: InFluid,
+    there: Placed, molecule: Molecule | None, pool: Floats, first: Floats, random: Draws
 ) -> bool:
-    """Bead by bead along the bonds of a chain or star."""
-    if not (in_fluid(first[None])[0] and there.free(first)):
-        return False
+    """Add a chain or star bead by bead along its bonds; whether that worked."""
     start = there.number
-    there.add(first)
+    if not _put(there, first[None]):
+        return False
     came: dict[int, Floats] = {}  # the bond by which each bead was reached
     for a, b in tree_of(molecule) if molecule else ():
         bonds = pool[(random.units(AT_ONCE)[0] * len(pool)).astype(int)]
         if molecule and molecule.bending is not None:
-            if a in came:
-                bonds = _reflected(bonds, came[a])
-            else:
-                bonds = bonds @ _any_turn(len(first), random)
+            bonds = (
+                _reflected(bonds, came[a]) if a in came else bonds @ _any_turn(len(first), random)
+            )
         ends = there.places[start + a] + bonds
-        good = next((n for n in np.flatnonzero(in_fluid(ends)) if there.free(ends[n])), None)
+        good = next((n for n in np.flatnonzero(there.in_fluid(ends)) if there.free(ends[n])), None)
         if good is None:
             return False
         came[b] = bonds[good]
@@ -152,9 +133,9 @@ def tree_of(molecule: Molecule) -> Links:
     return molecule.tree if isinstance(molecule, FreeMolecule) else molecule.bonds
 
 
-def _put(there: Placed, places: Floats, in_fluid: InFluid, own: bool = False) -> bool:
+def _put(there: Placed, places: Floats, own: bool = False) -> bool:
     """Add a molecule as it is, if no bead is near another one, or if `own` another of its own."""
-    if not (in_fluid(places).all() and all(there.free(place) for place in places)):
+    if not (there.in_fluid(places).all() and all(there.free(place) for place in places)):
         return False
     for place in places:
         if own and not there.free(place):
@@ -190,12 +171,19 @@ def _any_turn(d: int, random: Draws) -> Floats:
 class Placed:
     """Beads that have a place already, in cells, to find those nearby.
 
-    Beads are of `kinds` (beads,); limits (kinds, kinds): how near those of two kinds may come.
+    Beads are of `kinds` (beads,); limits (kinds, kinds): how near those of two kinds may come;
+    in_fluid: which of places (n, d) are in the fluid.
     """
 
     def __init__(
-        self, kinds: NDArray[np.int64], box: Floats, periods: Floats, limits: Floats
+        self,
+        kinds: NDArray[np.int64],
+        box: Floats,
+        periods: Floats,
+        limits: Floats,
+        in_fluid: InFluid,
     ) -> None:
+        self.in_fluid = in_fluid
         self.places, self.number = np.empty((len(kinds), len(box))), 0
         self.kinds, self.squares, self.limit = kinds, limits**2, float(limits.max())
         self.box, self.inverse = box, 1.0 / periods

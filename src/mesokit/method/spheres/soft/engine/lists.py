@@ -58,7 +58,10 @@ def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
                         found = list_span(columns, box, lists, i, span, found, beside)
         if lists.halves:
             lists.own[i] = own_first(lists, i, found, first)
-        lists.count[i] = fill_up(lists, i, found)
+        # Lists are filled up with the sphere itself.
+        lists.count[i] = (found + GROUP - 1) // GROUP * GROUP
+        for s in range(found, min(lists.count[i], lists.near.shape[1])):
+            lists.near[i, s] = np.int32(i)
         for k in range(3):
             lists.made_at[i, k] = bodies.place[i, k]
 
@@ -112,12 +115,3 @@ def own_first(lists, i, found, first):
         lists.near[i, own] = j if mine else other
         own += mine
     return own
-
-
-@scalar
-def fill_up(lists, i, found):
-    """Fill a list with the sphere itself, to whole groups; its length then."""
-    whole = (found + GROUP - 1) // GROUP * GROUP
-    for s in range(found, min(whole, lists.near.shape[1])):
-        lists.near[i, s] = np.int32(i)
-    return whole
