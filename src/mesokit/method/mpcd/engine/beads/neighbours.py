@@ -89,7 +89,8 @@ def _apart(box, r, other):
 
 def _apart_sliding(box, r, other):
     up = rint((other[1] - r[1]) * box.inverse[1])
-    return _apart(box, r, with_item(other, 0, other[0] - up * box.offset))
+    image = with_item(other, 0, other[0] - up * box.offset)
+    return nearest_image(box, added_scaled(image, -1.0, r))
 
 
 @by_type

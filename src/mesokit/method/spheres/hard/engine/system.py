@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.kernels.group import Packing
-from mesokit.loops.layout import by_number
+from mesokit.loops.layout import by_number, zeros
 from mesokit.loops.neighbours import inverse_lengths
 from mesokit.method.spheres.common.wall.rows import FREQUENCY, PHASE
 from mesokit.method.spheres.hard.engine import groups
@@ -69,7 +69,7 @@ class System:
         self.now = 0.0  # since the start of the window
         n, d = self.n, self.d
         self.spheres = SphereMemory(
-            aligned(n, groups.WIDTH),
+            zeros((n, groups.WIDTH)),
             np.zeros((n, groups.BODY_WIDTH)),
             np.zeros((n, d), np.int32),
             np.arange(n, dtype=np.int64),
@@ -200,7 +200,7 @@ class System:
         return Queue(
             self.per_time,
             np.zeros(n),
-            aligned(n, groups.EVENT_WIDTH, np.int32),
+            zeros((n, groups.EVENT_WIDTH), np.int32),
             np.zeros(bins, np.int32),
             np.zeros(n, np.int32),
             np.zeros(2, np.int64),
@@ -318,11 +318,3 @@ class System:
             array[:] = state[f"tally/{name}"]
         self.now = float(state["now"])
         self.begin_window(int(state["windows"]))
-
-
-def aligned(n: int, width: int, kind: type = np.float64) -> Any:
-    """Rows of numbers that begin at multiples of 64 bytes."""
-    size = np.dtype(kind).itemsize
-    raw: NDArray[Any] = np.zeros(n * width + 64 // size, kind)
-    start = (-raw.ctypes.data % 64) // size
-    return raw[start : start + n * width].reshape(n, width)
