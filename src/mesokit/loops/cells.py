@@ -7,7 +7,7 @@
 from typing import NamedTuple
 
 from mesokit.scalar.intrinsics import floor
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import elementwise, scalar
 
 NOWHERE = -1  # no cell, beyond a wall
 
@@ -23,6 +23,12 @@ class Grid(NamedTuple):
 def cell_along(grid, k, x):
     """Number of the cell along an axis of a coordinate in the box."""
     return min(max(int(floor(x * grid.inverse[k])), 0), grid.cells[k] - 1)
+
+
+@elementwise
+def cells_along(grid, r):
+    """Numbers of the cell along each axis of a place in the box."""
+    return "cell_along(grid, {k}, r[{k}])"
 
 
 @scalar
@@ -50,26 +56,27 @@ def cell_after(grid, box, k, here, offset):
 
 
 @scalar
-def cell_around(grid, box, r, slide, n):
+def cell_around(grid, box, r, here, slide, n):
     """Number of the nth of the 3^d cells at and around a place in the box; NOWHERE for none.
 
+    `here`: numbers of the cell of r along each axis.
     `slide`: displacement along x of the images above, 0 without shear. Every bead within the length
     of a cell, images included, is in one of these cells, and no cell comes twice.
     """
-    x, along_x, cell, stride = r[0], n % 3 - 1, 0, grid.cells[0]
+    middle, along_x, cell, stride = here[0], n % 3 - 1, 0, grid.cells[0]
     # x comes last: across an end along y images are displaced along x, and the place with them.
     for k in range(1, len(r)):
         n //= 3
-        here, offset = cell_along(grid, k, r[k]), n % 3 - 1
-        there = cell_after(grid, box, k, here, offset)
+        offset = n % 3 - 1
+        there = cell_after(grid, box, k, here[k], offset)
         if there == NOWHERE:
             return NOWHERE
-        if k == 1 and there != here + offset:
-            x -= offset * slide
-            x -= floor(x * box.inverse[0]) * box.size[0]
+        if k == 1 and there != here[k] + offset:
+            x = r[0] - offset * slide
+            middle = cell_along(grid, 0, x - floor(x * box.inverse[0]) * box.size[0])
         cell += there * stride
         stride *= grid.cells[k]
-    there = cell_after(grid, box, 0, cell_along(grid, 0, x), along_x)
+    there = cell_after(grid, box, 0, middle, along_x)
     return cell + there if there != NOWHERE else NOWHERE
 
 

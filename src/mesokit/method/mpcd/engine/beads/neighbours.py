@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.case.box import SLIDING, fold
-from mesokit.loops.cells import NOWHERE, cell_around, cell_of
+from mesokit.loops.cells import NOWHERE, cell_around, cell_of, cells_along
 from mesokit.loops.layout import share
 from mesokit.loops.neighbours import GAP, insert, nearest_image, outdated
 from mesokit.loops.threads import barrier
@@ -177,8 +177,9 @@ def make_list(lists, box, places, i, zero):
     # Neighbours are inserted by id. A bead adds up forces in this order, so its sum of floats has
     # the same bits whenever the list was made. `found` counts on beyond a full list, to mark it
     # CROWDED.
+    here = cells_along(lists, r)
     for n in range(3**d):
-        cell = cell_around(lists, box, r, slide, n)
+        cell = cell_around(lists, box, r, here, slide, n)
         j = lists.head[cell] if cell != NOWHERE else -1
         while j >= 0:
             separation = apart(box, mine, load_values(places, np.uint64(j * d), zero))

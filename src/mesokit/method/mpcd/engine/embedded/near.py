@@ -12,7 +12,7 @@ import numpy as np
 
 from mesokit.case.box import fold
 from mesokit.kernels.kernel import inner
-from mesokit.loops.cells import NOWHERE, cell_around
+from mesokit.loops.cells import NOWHERE, cell_around, cells_along
 from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.neighbours import apart, find_cells, link
@@ -144,8 +144,9 @@ def find_partners(embedded, beads, box, r, path, where):
     # Beads in the 9 or 27 cells around the particle; these cells are at least as long as the reach.
     # The list holds beads within reach of a flight of length `travel`. It is kept only if one of
     # them is within reach of the particle's own flight. Forces are integers, so its order is free.
+    here = cells_along(lists, place)
     for n in range(3**d):
-        cell = cell_around(lists, box, place, 0.0, n)
+        cell = cell_around(lists, box, place, here, 0.0, n)
         j = lists.head[cell] if cell != NOWHERE else -1
         while j >= 0:
             if comes_near(embedded, beads, box, r, embedded.travel, j):

@@ -7,7 +7,7 @@ cells, as only centres lie in the grid.
 
 import math
 
-from mesokit.loops.cells import NOWHERE, cell_around, cell_of
+from mesokit.loops.cells import NOWHERE, cell_around, cell_of, cells_along
 from mesokit.loops.neighbours import nearest_image
 from mesokit.method.spheres.hard.engine.groups import RADIUS
 from mesokit.method.spheres.hard.engine.motion import entries, put_entries
@@ -69,8 +69,9 @@ def find(world, lists, state, i, r):
     """Put all spheres that may meet i on its list, and i on theirs; true if there was room."""
     room = True
     # Cells are at least as long as two centres may be apart and still matter.
+    here = cells_along(lists, r)
     for n in range(3 ** len(r)):
-        cell = cell_around(lists, world, r, 0.0, n)
+        cell = cell_around(lists, world, r, here, 0.0, n)
         if cell != NOWHERE:
             room &= take(world, lists, state, i, r, cell)
     return room

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
 from mesokit.kernels.kernel import kernel
-from mesokit.loops.cells import NOWHERE, Grid, cell_around, cell_of
+from mesokit.loops.cells import NOWHERE, Grid, cell_around, cell_of, cells_along
 from mesokit.loops.neighbours import inverse_lengths, nearest_image
 from mesokit.method.spheres.hard.engine.groups import World
 from mesokit.method.spheres.hard.engine.motion import entries, put_entries
@@ -79,8 +79,9 @@ def fits(world, grid, head, following, radii, places, r, radius):
         if distance < radius:
             return False
     # Cells are as long as the largest diameter, so all that may be touched are in those around.
+    here = cells_along(grid, r)
     for n in range(3 ** len(r)):
-        cell = cell_around(grid, world, r, 0.0, n)
+        cell = cell_around(grid, world, r, here, 0.0, n)
         j = head[cell] if cell != NOWHERE else -1
         while j >= 0:
             apart = nearest_image(world, added_scaled(entries(places, j, 0, r), -1.0, r))
