@@ -12,6 +12,7 @@ from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.kernels.packing import Packing
+from mesokit.loops.layout import by_number
 from mesokit.loops.threads import Threads
 from mesokit.method.flock.engine.memory import Physics, axes_of, make
 from mesokit.method.flock.engine.step import step
@@ -127,6 +128,6 @@ class Flocks:
         self.step = int(state["step"])
 
     def _by_number(self, arrays: NDArray[Any], ids: Integers | None = None) -> NDArray[Any]:
-        found = np.empty(arrays.shape[:0:-1], arrays.dtype)  # (2, d, n) to (n, d)
-        found[self.flock.birds.numbers[self.current]] = arrays[self.current].T
+        # (2, d, n) to (n, d)
+        found = by_number(self.flock.birds.numbers[self.current], arrays[self.current].T)
         return found if ids is None else found[ids]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from mesokit.case.case import Case
+from mesokit.loops.neighbours import near_pairs
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.start.first_state import given_state
 from mesokit.method.spheres.common.start.protocol import Array, Placed
@@ -81,17 +82,8 @@ def _head_on(case: Case, velocities: Array) -> float:
 
 def _largest_overlap(case: Case, known: Placed) -> float:
     """Of two spheres, 0 where none overlap."""
-    from scipy.spatial import cKDTree
-
     diameters = made(case).diameters if known.diameters is None else known.diameters
-    size = np.array(case.box.size, float)
-    around, closed = np.where(room_of(case).closed, 3 * size, size), room_of(case).closed
-    places = np.where(closed, known.positions, np.mod(known.positions, size))
-    places = np.where(places < around, np.maximum(places, 0.0), 0.0)
-    pairs = cKDTree(places, boxsize=around).query_pairs(
-        float(diameters.max()), output_type="ndarray"
-    )
-    separation = places[pairs[:, 0]] - places[pairs[:, 1]]
-    separation -= around * np.rint(separation / around)
-    apart = 0.5 * (diameters[pairs[:, 0]] + diameters[pairs[:, 1]])
-    return float(np.max(apart - np.linalg.norm(separation, axis=1), initial=0.0))
+    period = np.where(room_of(case).closed, 0.0, case.box.size)
+    one, two, distance = near_pairs(known.positions, float(diameters.max()), period)
+    apart = 0.5 * (diameters[one] + diameters[two])
+    return float(np.max(apart - distance, initial=0.0))

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
+from mesokit.loops.neighbours import near_pairs
 
 Array = NDArray[np.float64]
 TRIES = 2000  # of all that have no place yet
@@ -16,24 +17,18 @@ def among_solids(case: Case, diameters: Array, closed: tuple[bool, ...]) -> Arra
 
     All that have no place yet draw one, again and again; of two that meet the later gives way.
     """
-    from scipy.spatial import cKDTree
-
     solids, size = solids_of(case), np.array(case.box.size, float)
     random = np.random.default_rng(case.run.seed)
-    around = np.where(closed, 3 * size, size)  # images far away
+    period = np.where(closed, 0.0, size)
     places, left = np.zeros((len(diameters), len(size))), np.arange(len(diameters))
     placed = np.zeros(0, np.int64)
     for _ in range(TRIES):
         places[left] = random.uniform(0.0, 1.0, (len(left), len(size))) * size
         free = left[solids.distance(places[left]) > 0.5 * diameters[left]]
         order = np.concatenate([placed, free])
-        pairs = cKDTree(places[order], boxsize=around).query_pairs(
-            float(diameters.max()), output_type="ndarray"
-        )
-        one, two = order[pairs.min(axis=1)], order[pairs.max(axis=1)]
-        separation = places[one] - places[two]
-        separation -= around * np.rint(separation / around)
-        meets = np.linalg.norm(separation, axis=1) < 0.5 * (diameters[one] + diameters[two])
+        one, two, distance = near_pairs(places[order], float(diameters.max()), period)
+        one, two = order[np.minimum(one, two)], order[np.maximum(one, two)]
+        meets = distance < 0.5 * (diameters[one] + diameters[two])
         placed = np.setdiff1d(order, two[meets])
         left = np.setdiff1d(left, placed)
         if not len(left):

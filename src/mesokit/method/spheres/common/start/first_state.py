@@ -11,6 +11,7 @@ from mesokit.case.case import Case
 from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.loops.neighbours import near_pairs
 from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.start import thermal
 from mesokit.method.spheres.common.start.lattice import shut
@@ -56,23 +57,15 @@ def given_state(case: Case, made: Made, arrays: Mapping[str, Any]) -> Placed:
 
 def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]) -> None:
     """Raise CaseError for spheres that lie on one another, or on plates, by more than rounding."""
-    from scipy.spatial import cKDTree
-
     largest = float(diameters.max())
     beyond = np.minimum(places, size - places) - 0.5 * diameters[:, None]
     lowest = np.where(closed, beyond, np.inf).min(axis=1)
     if (lowest < -ROUNDING * largest).any():
         raise CaseError(f"positions: sphere {int(lowest.argmin())} lies in a plate")
-    around = np.where(closed, 3 * size, size)
-    tree = cKDTree(np.where(closed, places, np.mod(places, size)), boxsize=around)
-    pairs = tree.query_pairs(largest, output_type="ndarray")
-    separation = places[pairs[:, 0]] - places[pairs[:, 1]]
-    separation -= around * np.rint(separation / around)
-    gaps = np.linalg.norm(separation, axis=1) - 0.5 * (
-        diameters[pairs[:, 0]] + diameters[pairs[:, 1]]
-    )
+    one, two, distance = near_pairs(places, largest, np.where(closed, 0.0, size))
+    gaps = distance - 0.5 * (diameters[one] + diameters[two])
     if len(gaps) and gaps.min() < -ROUNDING * largest:
-        i, j = pairs[gaps.argmin()]
+        i, j = one[gaps.argmin()], two[gaps.argmin()]
         raise CaseError(f"positions: spheres {i} and {j} overlap by {-gaps.min():.3g}")
 
 

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mesokit.loops.neighbours import nearest_image
 from mesokit.method.spheres.common.wall.rows import MOVES, vibration
 from mesokit.method.spheres.hard.collision.protocol import restitution, step_of_energy
 from mesokit.method.spheres.hard.engine.flights import note_flight
@@ -21,7 +22,7 @@ from mesokit.method.spheres.hard.engine.groups import (
     VIRIAL,
     WALLS,
 )
-from mesokit.method.spheres.hard.engine.motion import bring_to, entries, nearest_image, put_entries
+from mesokit.method.spheres.hard.engine.motion import bring_to, entries, put_entries
 from mesokit.method.spheres.hard.engine.walls import outward
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import METHOD, Counter, normals, unit, words

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import RunError
+from mesokit.loops.neighbours import near_pairs
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.moments import moments
 from mesokit.method.spheres.common.start.protocol import Started
@@ -193,18 +194,13 @@ class EventDriven:
         pair = self.case.spheres.collision
         if pair.energy_within == 0.0:
             return 0.0
-        from scipy.spatial import cKDTree
-
-        places, diameters = self.positions(), self.diameters()
-        around = np.where(self._repeats > 0, self.box, 3 * self.box)  # images far away
-        inside = np.where(self._repeats > 0, places, np.clip(places, 0, self.box))
-        near = cKDTree(inside, boxsize=around).query_pairs(
-            pair.reach * float(diameters.max()), output_type="ndarray"
+        diameters = self.diameters()
+        period = np.where(self._repeats > 0, self.box, 0.0)
+        one, two, distance = near_pairs(
+            self.positions(), pair.reach * float(diameters.max()), period
         )
-        separation = inside[near[:, 0]] - inside[near[:, 1]]
-        separation -= around * np.rint(separation / around)
-        within = 0.5 * pair.reach * (diameters[near[:, 0]] + diameters[near[:, 1]])
-        return pair.energy_within * int((np.linalg.norm(separation, axis=1) < within).sum())
+        within = 0.5 * pair.reach * (diameters[one] + diameters[two])
+        return pair.energy_within * int((distance < within).sum())
 
     def moments(
         self, axes: tuple[int, ...], bins: tuple[int, ...], ids: Integers | None = None

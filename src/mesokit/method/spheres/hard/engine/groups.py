@@ -49,7 +49,7 @@ class SphereMemory(NamedTuple):
 class Lists(NamedTuple):
     """Neighbour lists: pairs that may collide before one of them is `shell` away from its centre.
 
-    centre (n, 4): these places, and how far one may go; cells (d,), per_length (d,): of the grid;
+    centre (n, 4): these places, and how far one may go; cells (d,), inverse (d,): of the grid;
     cell (n,), head (cells,), following (n,), before (n,): the centres of each cell, linked;
     count (n,), near (n, most): the lists; columns (8, most), times
     (most,): the states of those on one list, and when they are met.
@@ -58,7 +58,7 @@ class Lists(NamedTuple):
     shell: float
     widest: float
     cells: tuple[int, ...]
-    per_length: tuple[float, ...]
+    inverse: tuple[float, ...]
     centre: Any
     cell: Any
     head: Any

@@ -45,14 +45,6 @@ def velocity_at(world, state, i, time):
 
 
 @scalar
-def nearest_image(world, r):
-    """The shortest of the vectors that differ from r by whole boxes."""
-    for k in range(len(r)):
-        r = with_item(r, k, r[k] - rint(r[k] * world.inverse[k]) * world.size[k])
-    return r
-
-
-@scalar
 def bring_to(world, spheres, i, time):
     """Bring sphere i to a time, and into the box; its state there."""
     state = spheres.state

@@ -7,8 +7,10 @@ from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
 from mesokit.kernels.kernel import kernel
+from mesokit.loops.cells import NOWHERE, Grid, cell_around, cell_of, cells_along
+from mesokit.loops.neighbours import inverse_lengths, nearest_image
 from mesokit.method.spheres.hard.engine.groups import World
-from mesokit.method.spheres.hard.engine.motion import entries, nearest_image, put_entries
+from mesokit.method.spheres.hard.engine.motion import entries, put_entries
 from mesokit.method.spheres.hard.engine.walls import outward
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
@@ -26,13 +28,13 @@ def scattered(
     """Places (n, d) for spheres of these diameters (n,). Raises CaseError where one finds none."""
     n, d = len(diameters), len(size)
     lengths = tuple(float(length) for length in size)
-    inverse = tuple(0.0 if shut else 1.0 / x for shut, x in zip(closed, lengths, strict=True))
-    world = World(lengths, inverse, (0.0,) * d, 0.0, walls, 0.0, 0.0)
-    cells = tuple(int(max(1, x // diameters.max())) for x in lengths)
-    cells = tuple(min(c, max(1, int(4 * n ** (1 / d)))) for c in cells)
+    world = World(lengths, inverse_lengths(size, closed), (0.0,) * d, 0.0, walls, 0.0, 0.0)
+    most = max(1, int(4 * n ** (1 / d)))
+    cells = tuple(min(int(max(1, x // diameters.max())), most) for x in lengths)
     head, following = np.full(cells, -1, np.int32).ravel(), np.zeros(n, np.int32)
+    grid = Grid(cells, tuple(c / x for c, x in zip(cells, lengths, strict=True)))
     places = np.zeros((n, d))
-    left = add_all(world, cells, head, following, 0.5 * diameters, places, np.uint64(seed))
+    left = add_all(world, grid, head, following, 0.5 * diameters, places, np.uint64(seed))
     if left:
         raise CaseError(
             f"spheres: no room found for {left} of {n} at random places; expected fewer or smaller"
@@ -41,15 +43,15 @@ def scattered(
 
 
 @kernel
-def add_all(world, cells, head, following, radii, places, seed):
+def add_all(world, grid, head, following, radii, places, seed):
     """Place all spheres; returns the number of those that find no place."""
     for i in range(len(radii)):
         found = False
         for attempt in range(TRIES):
             r = drawn(world, seed, i, attempt)
-            if fits(world, cells, head, following, radii, places, r, radii[i]):
+            if fits(world, grid, head, following, radii, places, r, radii[i]):
                 put_entries(places, i, 0, r)
-                cell = cell_of(world, cells, r)
+                cell = cell_of(grid, r)
                 following[i] = head[cell]
                 head[cell] = i
                 found = True
@@ -70,29 +72,17 @@ def drawn(world, seed, i, attempt):
 
 
 @scalar
-def cell_of(world, cells, r):
-    """Number of the cell of a place."""
-    cell = 0
-    for k in range(len(r)):
-        here = min(int(r[k] / world.size[k] * cells[k]), cells[k] - 1)
-        cell = cell * cells[k] + here
-    return cell
-
-
-@scalar
-def fits(world, cells, head, following, radii, places, r, radius):
+def fits(world, grid, head, following, radii, places, r, radius):
     """Whether a sphere at r touches neither a wall nor another."""
     for w in range(len(world.walls)):
         distance, _ = outward(world, w, r)
         if distance < radius:
             return False
-    for step in range(9 if len(r) == 2 else 27):
-        cell, rest = 0, step
-        for k in range(len(r)):
-            here = min(int(r[k] / world.size[k] * cells[k]), cells[k] - 1)
-            cell = cell * cells[k] + (here + rest % 3 - 1 + cells[k]) % cells[k]
-            rest //= 3
-        j = head[cell]
+    # Cells are as long as the largest diameter, so all that may be touched are in those around.
+    here = cells_along(grid, r)
+    for n in range(3 ** len(r)):
+        cell = cell_around(grid, world, r, here, 0.0, n)
+        j = head[cell] if cell != NOWHERE else -1
         while j >= 0:
             apart = nearest_image(world, added_scaled(entries(places, j, 0, r), -1.0, r))
             reach = radius + radii[j]

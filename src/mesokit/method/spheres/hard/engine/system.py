@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.kernels.packing import Packing
+from mesokit.loops.layout import by_number, zeros
+from mesokit.loops.neighbours import inverse_lengths
 from mesokit.method.spheres.common.wall.rows import FREQUENCY, PHASE
 from mesokit.method.spheres.hard.engine import groups
 from mesokit.method.spheres.hard.engine.collide import Rules
@@ -67,7 +69,7 @@ class System:
         self.now = 0.0  # since the start of the window
         n, d = self.n, self.d
         self.spheres = SphereMemory(
-            aligned(n, groups.WIDTH),
+            zeros((n, groups.WIDTH)),
             np.zeros((n, groups.BODY_WIDTH)),
             np.zeros((n, d), np.int32),
             np.arange(n, dtype=np.int64),
@@ -119,9 +121,7 @@ class System:
         """What does not change during a window."""
         given = self.given
         size = tuple(float(length) for length in given.size)
-        inverse = tuple(
-            0.0 if shut else 1.0 / length for shut, length in zip(given.closed, size, strict=True)
-        )
+        inverse = inverse_lengths(size, given.closed)
         gravity = tuple(float(g) for g in given.gravity) or (0.0,) * self.d
         lasting, instant = given.lasting, given.instant
         return World(size, inverse, gravity, self.growth, self.walls, lasting, instant)
@@ -200,7 +200,7 @@ class System:
         return Queue(
             self.per_time,
             np.zeros(n),
-            aligned(n, groups.EVENT_WIDTH, np.int32),
+            zeros((n, groups.EVENT_WIDTH), np.int32),
             np.zeros(bins, np.int32),
             np.zeros(n, np.int32),
             np.zeros(2, np.int64),
@@ -285,15 +285,12 @@ class System:
         """Places, not brought into the box, and velocities (n, d) now, by particle number."""
         places, velocities = np.empty((self.n, self.d)), np.empty((self.n, self.d))
         read(self.world, self.spheres, self.now, places, velocities)
-        boxes = np.empty_like(self.spheres.boxes)
-        boxes[self.spheres.number] = self.spheres.boxes
+        boxes = self.by_number(self.spheres.boxes)
         return places + boxes * np.array(self.given.size, float), velocities
 
     def by_number(self, values: NDArray[Any]) -> NDArray[Any]:
         """Rows in the order of particle numbers."""
-        found = np.empty_like(values)
-        found[self.spheres.number] = values
-        return found
+        return by_number(self.spheres.number, values)
 
     # --- checkpoints ----------------------------------------------------------------------------
 
@@ -321,11 +318,3 @@ class System:
             array[:] = state[f"tally/{name}"]
         self.now = float(state["now"])
         self.begin_window(int(state["windows"]))
-
-
-def aligned(n: int, width: int, kind: type = np.float64) -> Any:
-    """Rows of numbers that begin at multiples of 64 bytes."""
-    size = np.dtype(kind).itemsize
-    raw: NDArray[Any] = np.zeros(n * width + 64 // size, kind)
-    start = (-raw.ctypes.data % 64) // size
-    return raw[start : start + n * width].reshape(n, width)

@@ -6,6 +6,7 @@ are too short to come through: from a lower bound of the distance, a parabola.
 
 import math
 
+from mesokit.loops.neighbours import nearest_image
 from mesokit.method.spheres.common.wall.rows import (
     AMPLITUDE,
     AXIS,
@@ -20,8 +21,6 @@ from mesokit.method.spheres.common.wall.rows import (
 )
 from mesokit.method.spheres.hard.engine.groups import RADIUS, TIME, VELOCITY
 from mesokit.method.spheres.hard.engine.motion import entries, fallen
-from mesokit.scalar.elementary import rint
-from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
@@ -38,9 +37,7 @@ def outward(world, w, r):
     axis = entries(walls, w, AXIS, r)
     if walls[w, KIND] == PLANE:
         return dot(from_place, axis), axis
-    for k in range(len(r)):
-        boxes = rint(from_place[k] * world.inverse[k])
-        from_place = with_item(from_place, k, from_place[k] - boxes * world.size[k])
+    from_place = nearest_image(world, from_place)
     across = added_scaled(from_place, -dot(from_place, axis), axis)
     length = math.sqrt(dot(across, across))
     normal = axis

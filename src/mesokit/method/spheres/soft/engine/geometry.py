@@ -2,6 +2,7 @@
 
 import math
 
+from mesokit.loops.neighbours import nearest_image
 from mesokit.method.spheres.common.wall.rows import (
     AXIS,
     KIND,
@@ -12,7 +13,6 @@ from mesokit.method.spheres.common.wall.rows import (
     vibration,
 )
 from mesokit.method.spheres.soft.engine.groups import REACH
-from mesokit.scalar.elementary import rint
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
@@ -24,19 +24,9 @@ def row(array, i):
 
 
 @scalar
-def nearest(box, separation):
-    """A vector to the nearest image."""
-    return (
-        separation[0] - box.size[0] * rint(separation[0] * box.inverse[0]),
-        separation[1] - box.size[1] * rint(separation[1] * box.inverse[1]),
-        separation[2] - box.size[2] * rint(separation[2] * box.inverse[2]),
-    )
-
-
-@scalar
 def from_to(box, place, j, r):
     """The vector that leads from sphere j to r: bit for bit minus that from r to j."""
-    return nearest(box, added_scaled(r, -1.0, row(place, j)))
+    return nearest_image(box, added_scaled(r, -1.0, row(place, j)))
 
 
 @scalar
@@ -53,7 +43,7 @@ def from_wall(rows, w, box, r, time):
     if rows[w, KIND] == PLANE:
         shift, speed, _ = vibration(rows, w, time)
         return dot(separation, axis) - shift, axis, added_scaled(moves, speed, axis)
-    separation = nearest(box, separation)
+    separation = nearest_image(box, separation)
     across = added_scaled(separation, -dot(separation, axis), axis)
     length = math.sqrt(dot(across, across))
     normal = scaled(rows[w, KIND] / length, across) if length > 0.0 else axis

@@ -11,6 +11,7 @@ import numpy as np
 
 from mesokit.case.box import fold
 from mesokit.kernels.part import stage
+from mesokit.loops.neighbours import insert
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.neighbours import MADE
 from mesokit.method.mpcd.engine.beads.state import AROUND, OWN, has_halo, load_place, load_velocity
@@ -136,16 +137,6 @@ def migrate_beads(now, physics, box, shared, beads):
 
 
 @scalar
-def insert(numbers, which, number, i):
-    """Put an id into an ordered list; returns the length of the list."""
-    place = number
-    while place > 0 and numbers[which, place - 1] > i:
-        numbers[which, place] = numbers[which, place - 1]
-        place -= 1
-    numbers[which, place] = i
-    return number + 1
-
-
 @scalar
 def append(out, p, i, r, v):
     """Add id, place and velocity of a bead to the message to a partner."""
