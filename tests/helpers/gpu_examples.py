@@ -25,7 +25,7 @@ from mesokit.case.shear import protocol as histories
 from mesokit.geometry import protocol
 from mesokit.geometry import protocol as solids
 from mesokit.geometry.protocol import Nothing
-from mesokit.geometry.solids import contact, virtual_particles  # noqa: F401  what solids in tables answer
+from mesokit.geometry.solids import contact  # noqa: F401  registers the forms of solids in tables
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
 from mesokit.loops.neighbours import nearest_image
