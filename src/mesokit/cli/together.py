@@ -11,8 +11,8 @@ from typing import Any
 import click
 
 from mesokit.errors import CaseError, RunError
-from mesokit.processes import launcher, parent
-from mesokit.processes.world import stay_alone, world
+from mesokit.processes import parent
+from mesokit.processes.world import is_first, may_be_several, stay_alone, world
 
 TOGETHER = ("run", "resume", "warm")  # all others are commands of one process
 ALONE = ("study",)  # those that would start runs of their own
@@ -27,7 +27,7 @@ Command = Callable[..., Any]
 
 def take_part(command: str | None) -> None:
     """Have all ranks of a launcher in a command that they carry out together, and one in others."""
-    if not launcher.several():
+    if not may_be_several():
         return
     if command in TOGETHER:
         here = world()
@@ -36,7 +36,7 @@ def take_part(command: str | None) -> None:
         else:
             sys.stdout = sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
         return
-    if not launcher.first():
+    if not is_first():
         raise SystemExit(0)
     stay_alone()
     if command in ALONE:
@@ -69,7 +69,7 @@ def _carried_by(ranks: int, arguments: Sequence[str], output: Path) -> int:
     from mesokit.processes.cores import usable_cores
     from mesokit.processes.mpiexec import find, start
 
-    if launcher.several():
+    if may_be_several():
         raise CaseError("--ranks: this is one of the ranks of an mpiexec; leave it out")
     find()
     cores = usable_cores()

@@ -8,7 +8,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from mesokit.case.kind import note_run
-from mesokit.processes.order import Coming, Order
+from mesokit.processes.alone import Coming, Order
 from mesokit.processes.signals import Stopped
 from mesokit.report.progress import Reporter
 from mesokit.run.compiling import swallowed, telling
