@@ -1,4 +1,4 @@
-"""Commands that say what a case file may say: new, schema, explain."""
+"""Commands about the contents of case files: new, schema, explain."""
 
 import re
 from collections.abc import Iterable
@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from mesokit.case import methods
-from mesokit.cli.commands import cli
+from mesokit.cli.commands import FILE, cli
 from mesokit.cli.completion import beginning
 from mesokit.errors import CaseError
 
@@ -115,9 +115,7 @@ def _create(file: Path, text: str) -> None:
 
 
 @cli.command()
-@click.option(
-    "--output", type=click.Path(dir_okay=False, path_type=Path), help="File (the screen if none)."
-)
+@click.option("--output", type=FILE, help="File (the screen if none).")
 def schema(output: Path | None) -> None:
     """Write the JSON schema of case files, by which editors complete and check them.
 
