@@ -63,8 +63,8 @@ def study(what: Path, **given: Any) -> None:
     every number against the first key that is varied.
     """
     require_number(given)
+    from mesokit.study.cluster import write_job_array
     from mesokit.study.drive import StudyReporter
-    from mesokit.study.job_array import write_job_array
     from mesokit.study.study import Study
 
     with patience("checking the cases of all runs", given["quiet"]):
@@ -73,7 +73,7 @@ def study(what: Path, **given: Any) -> None:
         rows = enumerate(made.runs, start=1)
         return show_table([(str(number), run.state, str(run.path)) for number, run in rows])
     if given["job_array"]:
-        script = write_job_array(made, given["threads"])
+        script = write_job_array(made.path, len(made.runs), given["threads"])
         return click.echo(f"wrote {script}; next: sbatch {shlex.quote(str(script))}")
     if given["only"] is not None:
         return _only(made, given["only"], given["threads"])

@@ -1,4 +1,4 @@
-"""What a study varies: lists, ranges, and keys that change together."""
+"""Axes of a study: lists, ranges, and keys that change together."""
 
 from __future__ import annotations
 
@@ -103,11 +103,11 @@ class Axis:
         return axes
 
     def table(self) -> dict[str, list[Any]]:
-        """By key its values, as a [[vary]] table holds them."""
+        """Values by key, as in a [[vary]] table."""
         return {key: [row[i] for row in self.values] for i, key in enumerate(self.keys)}
 
     def text(self) -> str:
-        """As the command line has it.
+        """The text of the option --vary.
 
         >>> Axis(("fluid.kT", "run.steps"), ((1.0, 10), (2.0, 20))).text()
         'fluid.kT=1.0,2.0; run.steps=10,20'

@@ -1,4 +1,4 @@
-"""Carries the runs of a study to their ends, and tells how far they are."""
+"""Carries out the runs of a study, and reports progress."""
 
 import signal
 import time
@@ -21,31 +21,31 @@ LOOK_SECONDS = 1.0  # between two looks into the folders of the runs in hand
 
 
 class Workers(Protocol):
-    """Where runs are carried out: processes, this process, or a cluster."""
+    """Processes, this process, or a cluster, which carry out runs."""
 
     @property
     def places(self) -> int:
-        """How many runs they take at once."""
+        """The number of runs at once."""
 
     def submit(self, path: Path) -> Future[str]:
-        """Carry the run in a folder to its end; the answer says why it did not come there."""
+        """Carry the run in a folder to its end; the result is "", or why it did not end."""
 
     def stop(self) -> None:
-        """Let the runs in hand end at a checkpoint."""
+        """Let the present runs end at a checkpoint."""
 
     def close(self) -> None:
-        """Wait for what is in hand, and end."""
+        """Wait for the present runs, and end."""
 
 
 class StudyReporter(Reporter):
-    """Tells how a study goes: its steps are those of all particles of all runs, in millions."""
+    """Progress of a study, in steps times particles of all runs."""
 
     def __init__(self, quiet: bool = False, **options: Any) -> None:
         super().__init__(quiet, **options)
         self.runs = self.ended = 0
 
     def update(self, step: int) -> None:
-        """So much is done; while nothing is, runs compile, and there is no rate."""
+        """Report progress; while there is none, runs compile and there is no rate."""
         self.fresh = self.fresh or step == self.first
         super().update(step)
 
@@ -56,7 +56,6 @@ class StudyReporter(Reporter):
         return f"{self.ended} of {self.runs} runs"
 
     def words(self, step: int) -> str:
-        """Runs that have ended, the rate and the time left."""
         rate, ended = self.rate(), f"{self.count()} have ended"
         if step >= self.total:
             return f"{ended}, the last results and figures are being written"
