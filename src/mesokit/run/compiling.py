@@ -1,4 +1,4 @@
-"""Loading or compiling the kernels of a run, which is said if it takes long."""
+"""Messages while kernels of a run are loaded or compiled, if that takes long."""
 
 import contextlib
 import sys
@@ -12,29 +12,11 @@ SILENT = 0.7  # seconds
 
 @contextlib.contextmanager
 def telling(tell: Callable[[str], None]) -> Iterator[None]:
-    """Call `tell` with what is done meanwhile, if it takes long, and again when that changes."""
-    done, doing = threading.Event(), _doing()
-
-    def look() -> None:
-        said = ""
-        while not done.wait(SILENT):
-            words = doing()
-            if words != said:
-                tell(words)
-            said = words
-
-    threading.Thread(target=look, daemon=True).start()
-    try:
-        yield
-    finally:
-        done.set()
-
-
-def _doing() -> Callable[[], str]:
-    """What tells what has been done with kernels from now on."""
+    """Call `tell` with the present activity, if it takes long, and again when it changes."""
+    done = threading.Event()
     made, parts, kernels = counts.parts_made, counts.parts_found, counts.kernels_found
 
-    def words() -> str:
+    def doing() -> str:
         if counts.parts_made > made or counts.compiles_ahead:
             return "compiling (once; kept for the next runs)"
         if counts.parts_found > parts:
@@ -43,13 +25,24 @@ def _doing() -> Callable[[], str]:
             return "loading kernels"
         return "loading kernels, or waiting for another process that compiles them"
 
-    return words
+    def look() -> None:
+        last = ""
+        while not done.wait(SILENT):
+            if (words := doing()) != last:
+                tell(words)
+            last = words
+
+    threading.Thread(target=look, daemon=True).start()
+    try:
+        yield
+    finally:
+        done.set()
 
 
 @contextlib.contextmanager
 def swallowed(kind: type[BaseException]) -> Iterator[None]:
-    """Exceptions of a kind that C code cannot hand on, such as the compiler's, are not written out
-    where Python drops them."""
+    """Do not print exceptions of a kind that Python drops because C code, such as the compiler,
+    cannot pass them on."""
     earlier = sys.unraisablehook
     sys.unraisablehook = lambda told: None if isinstance(told.exc_value, kind) else earlier(told)
     try:
