@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
@@ -17,8 +18,6 @@ def spheres_of(path: str) -> Snapshot:
 
     Raises RunError for a folder without one, CaseError for a run of other particles.
     """
-    from mesokit.case.case import Case
-
     directory = RunDirectory.existing(path)
     earlier = Case.from_toml(directory.case_file)
     method, d = method_of(earlier), earlier.box.dimension

@@ -1,26 +1,22 @@
 """The trajectory of a run as a file for other programs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.case.trajectory import masses_and_kinds, names_and_diameters, written
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import replacing
 from mesokit.io.moments import Moment, Particles
+from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.run_directory import RunDirectory
-    from mesokit.io.trajectory_reader import TrajectoryReader
 
 Array = NDArray[Any]
 

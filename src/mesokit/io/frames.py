@@ -1,18 +1,14 @@
 """Whether the frames that a run should have by now are all there."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.trajectory import written
 from mesokit.errors import RunError
 from mesokit.io import h5md
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 NONE_YET = -1  # the step of a run that has not looked at its first state
 

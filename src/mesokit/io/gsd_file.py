@@ -4,21 +4,17 @@ Their box has its middle at the origin. A field that a file leaves out has a def
 velocities, which are 0 then, that is as good as none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
+from mesokit.io.moments import Moment, Particles
 from mesokit.io.optional import package
-
-if TYPE_CHECKING:
-    from mesokit.io.moments import Moment, Particles
 
 SPIN = "log/particles/angular_velocity"
 

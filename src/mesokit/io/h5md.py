@@ -20,28 +20,24 @@ Under Lees-Edwards shear the box is written as a triclinic one, whose second edg
 the images have slid: that of the nearest image, between -L/2 and L/2.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import name_of
 from mesokit.case.trajectory import kinds_of, names_and_diameters
 from mesokit.io.atomic import replacing
 from mesokit.io.hdf5 import made, opened
+from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.seam.in_units import units_of
 from mesokit.seam.method import method_of
 from mesokit.seam.result import Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.trajectory import TrajectoryWriter
 
 UNITS = {"position": "a", "velocity": "a/tau", "spin": "1/tau", "time": "tau", "radius": "a"}
 FIELDS = ("position", "velocity", "spin", "image", "site")

@@ -5,19 +5,15 @@ MDAnalysis wants the group to be called `trajectory`, takes what it does not kno
 angstrom here and a unit of time a picosecond, as all files are read that name no units.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import h5py
 import numpy as np
 
 from mesokit.io.hdf5 import made
-
-if TYPE_CHECKING:
-    from mesokit.io.moments import Moment, Particles
+from mesokit.io.moments import Moment, Particles
 
 UNITS = {
     "position": "Angstrom",

@@ -1,20 +1,16 @@
 """What MDAnalysis knows of a trajectory, and the formats that it writes."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.io.moments import Moment, Particles
 from mesokit.io.optional import package
-
-if TYPE_CHECKING:
-    from mesokit.io.moments import Moment, Particles
 
 FRAMES = {".dcd": "DCD", ".xtc": "XTC", ".trr": "TRR"}  # endings of formats with many frames
 

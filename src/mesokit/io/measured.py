@@ -1,24 +1,20 @@
 """States of engines and observables, written to checkpoints and restored from them."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.errors import CheckpointError, MesokitError
 from mesokit.io import checkpoint
 from mesokit.io.arrays_file import LARGE
 from mesokit.io.run_directory import RunDirectory
 from mesokit.seam.method import method_of
 from mesokit.seam.pooled import pool
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def keep(

@@ -1,15 +1,10 @@
 """One process at a time writes into the folder of a run."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from mesokit.errors import RunError
-
-if TYPE_CHECKING:
-    from mesokit.io.run_directory import RunDirectory
+from mesokit.io.run_directory import RunDirectory
 
 
 @contextlib.contextmanager

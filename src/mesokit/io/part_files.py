@@ -1,22 +1,18 @@
 """Files from which parts and solids were made, kept in the folder of a run."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mesokit.case.component import FromContents
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.shape.sampled import Sampled
+from mesokit.geometry.solids.solids import Solids
 from mesokit.io.atomic import replacing
 from mesokit.io.run_directory import RunDirectory
-
-if TYPE_CHECKING:
-    from mesokit.geometry.solids.solids import Solids
 
 
 def kept_row(parts: tuple[Any, ...], key: str, name: str, folder: Path) -> tuple[Any, ...]:

@@ -1,7 +1,5 @@
 """Where the numbers of a run come from: case, versions, host, and the sources of mesokit."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import hashlib
@@ -14,14 +12,12 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.outside import outside_parts
 from mesokit.io.checkpoint import digest, digest_of_file
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 LIBRARIES = ("mesokit", "numpy", "scipy", "numba", "h5py", "matplotlib", "pydantic")
 PACKAGE = Path(__file__).parents[1]

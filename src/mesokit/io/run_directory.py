@@ -7,16 +7,14 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.outside import require_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import write_text
 from mesokit.io.record_shape import misshapen
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 class _Named:

@@ -1,23 +1,19 @@
 """Results and comparisons as tables: CSV, pandas, xarray."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.io.atomic import write_text
 from mesokit.io.optional import package
 from mesokit.seam.named import keyed
 from mesokit.seam.result import Comparison, Result
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 EXTRA = "tables"
 NUMBERS = ("value", "error", "expected", "fit")

@@ -3,18 +3,15 @@
 Columns have the names of LAMMPS, VMD and OVITO: of spheres also radius and angular velocity.
 """
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import Any, TextIO
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from mesokit.io.moments import Moment, Particles
+from mesokit.io.moments import Moment, Particles
 
 FIGURES = "%.9g"  # of a number: all digits of single precision
 EXACT = " %.17g"  # a number with all digits of double precision

@@ -5,23 +5,19 @@ every checkpoint. A segment is one file, written whole. A run that goes on from 
 later frames, so no frame is missing or there twice. At the end all go to the data file of the run.
 """
 
-from __future__ import annotations
-
 import math
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.trajectory import Trajectory
 from mesokit.errors import RunError
 from mesokit.io.arrays_file import LARGE, load, one, save
 from mesokit.io.atomic import delete_folder
-
-if TYPE_CHECKING:
-    from mesokit.case.trajectory import Trajectory
 
 Frame = dict[str, Any]  # arrays, or what comes in pieces
 OWN = ("mass", "diameter")  # of each sphere, the same in all frames

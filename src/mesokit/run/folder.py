@@ -1,13 +1,12 @@
 """The folder of a run: what is kept there while it goes on, and how it goes on from there."""
 
-from __future__ import annotations
-
 import contextlib
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.trajectory import written
 from mesokit.errors import CheckpointError, MesokitError, RunError
 from mesokit.io import h5md
@@ -17,14 +16,11 @@ from mesokit.io.one_writer import alone
 from mesokit.io.provenance import now, provenance, recorded_case
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.processes.world import World
+from mesokit.run.log import RunLog
+from mesokit.run.replicas import Replicas
 from mesokit.seam.method import summary_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.processes.world import World
-    from mesokit.run.log import RunLog
-    from mesokit.run.replicas import Replicas
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Result
 
 
 class Folder:

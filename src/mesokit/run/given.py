@@ -1,14 +1,12 @@
 """Arguments of a simulation: a case or its parts, arrays to start from, threads, ranks."""
 
-from __future__ import annotations
-
 import hashlib
 import numbers
 import os
 import platform
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +16,9 @@ from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, show
 from mesokit.errors import CaseError
 from mesokit.processes.cores import usable_cores, which_cores
+from mesokit.processes.world import World
+from mesokit.run.callbacks import Callbacks
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.processes.world import World
-    from mesokit.run.callbacks import Callbacks
 
 MOST_THREADS = 1024
 PIECE = 2**18  # rows

@@ -1,22 +1,18 @@
 """The log of a run: numbers in time, on the screen and in a file."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.io.log_file import DamagedLog, LogFile
 from mesokit.report.log_lines import ERROR, LogLines
 from mesokit.run.callbacks import Callback
 from mesokit.seam.method import method_of
 from mesokit.seam.named import find
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 class RunLog:

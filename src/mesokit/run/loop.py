@@ -5,23 +5,20 @@ from __future__ import annotations
 import signal
 from collections.abc import Callable, Sequence
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 from mesokit.case.kind import note_run
+from mesokit.case.run import Run
 from mesokit.processes.alone import Coming, Order
 from mesokit.processes.signals import Stopped
+from mesokit.processes.world import World
 from mesokit.report.progress import Reporter
+from mesokit.run.callbacks import Callbacks
 from mesokit.run.compiling import swallowed, telling
+from mesokit.run.folder import Folder
+from mesokit.run.replicas import Replicas
 from mesokit.run.schedule import Leg, Schedule
+from mesokit.run.stop import Stop
 from mesokit.seam.engine import Interrupted
-
-if TYPE_CHECKING:
-    from mesokit.case.run import Run
-    from mesokit.processes.world import World
-    from mesokit.run.callbacks import Callbacks
-    from mesokit.run.folder import Folder
-    from mesokit.run.replicas import Replicas
-    from mesokit.run.stop import Stop
 
 CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
 

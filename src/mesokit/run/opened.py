@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from mesokit.case import toml
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.describe.shown import Shown
 from mesokit.errors import CaseError, RunError
@@ -26,14 +27,13 @@ from mesokit.run import pictures
 from mesokit.seam.in_units import in_units
 from mesokit.seam.method import method_of
 from mesokit.seam.named import keyed
+from mesokit.seam.result import Comparison, Result
 
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
+if TYPE_CHECKING:  # it loads the libraries of pictures
     from mesokit.report.flow import Film
-    from mesokit.seam.result import Comparison, Result
 
 
-class RunFiles(Shown, Mapping[str, "Result"]):
+class RunFiles(Shown, Mapping[str, Result]):
     """What a run has written, read when asked for: a mapping of its results by name.
 
     `files["velocity-profile"]` is a result, `list(files)` their names; `case`, `provenance`,
@@ -48,8 +48,6 @@ class RunFiles(Shown, Mapping[str, "Result"]):
     @cached_property
     def case(self) -> Case:
         """The resolved case."""
-        from mesokit.case.case import Case
-
         return Case.from_toml(self.directory.case_file)
 
     @cached_property

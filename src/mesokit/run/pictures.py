@@ -1,17 +1,13 @@
 """Pictures and films of a run, whether it is in memory or read from its files."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.component import require_known
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.report.flow import Film
-    from mesokit.seam.result import Result
+from mesokit.report.flow import Film
+from mesokit.seam.result import Result
 
 
 def flow(

@@ -1,26 +1,22 @@
 """Independent copies of a case that run side by side, each from a seed of its own."""
 
-from __future__ import annotations
-
 import copy
 import dataclasses
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.observe.shared.build_up import result_of
+from mesokit.run.schedule import Leg
 from mesokit.seam.method import method_of
+from mesokit.seam.observable import Accumulator
 from mesokit.seam.pooled import pool
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.run.schedule import Leg
-    from mesokit.seam.observable import Accumulator
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Result
 
 ALIKE = (
     "run.replicas: the first two move alike: neither their start nor what moves them knows of the "

@@ -1,12 +1,9 @@
 """Steps of a run at which samples, frames and checkpoints are due."""
 
-from __future__ import annotations
+from typing import NamedTuple
 
-from typing import TYPE_CHECKING, NamedTuple
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.observable import Observable
+from mesokit.case.case import Case
+from mesokit.seam.observable import Observable
 
 
 class Leg(NamedTuple):

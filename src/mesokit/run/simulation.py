@@ -6,7 +6,7 @@ import contextlib
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesokit.case import toml
 from mesokit.case.case import Case
@@ -19,6 +19,7 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.io.shared_work import shared_work
 from mesokit.processes.world import world
 from mesokit.report.document.progress import reporter_for
+from mesokit.report.flow import Film
 from mesokit.report.progress import Reporter
 from mesokit.run import pictures
 from mesokit.run.callbacks import Callback, Callbacks
@@ -31,10 +32,7 @@ from mesokit.run.schedule import Schedule
 from mesokit.run.stop import Stop
 from mesokit.run.until import Goal, limit_of, longer, next_length, require_steps
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.report.flow import Film
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Result
 
 
 class Simulation(Shown):

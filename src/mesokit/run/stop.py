@@ -1,17 +1,12 @@
 """Stop of a run before its end, by a signal to any of its processes or by a callback."""
 
-from __future__ import annotations
-
 import contextlib
 import signal
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from mesokit.processes.signals import Stopped, catching
-
-if TYPE_CHECKING:
-    from mesokit.processes.world import World
-    from mesokit.run.callbacks import Callbacks
+from mesokit.processes.world import World
+from mesokit.run.callbacks import Callbacks
 
 
 class Stop:

@@ -5,16 +5,13 @@ from __future__ import annotations
 import dataclasses
 import math
 import numbers
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
 from mesokit.seam.named import find
-from mesokit.seam.result import Comparison
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Comparison, Result
 
 MOST = 100  # times as long as the case says, unless a limit is given
 SHORTEST, LONGEST = 1.05, 2.0  # factors by which a run is made longer at a time

@@ -4,13 +4,12 @@ Blocks of time of all runs stand in a row. So ratios and fits are those of all s
 bars contain both the correlations within a run and the scatter of runs.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import RunError
 from mesokit.io import h5md
@@ -22,10 +21,7 @@ from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.caveats import with_those_of
 from mesokit.run.opened import RunFiles
 from mesokit.seam.pooled import pool
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Result
 
 MAY_DIFFER = (  # beginnings of keys
     "run.seed", "run.replicas", "run.steps", "run.checkpoint_", "trajectory.", "log.", "title",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
@@ -14,6 +14,7 @@ from mesokit.case.outside import outside_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.processes.cores import usable_cores
 from mesokit.processes.world import world
+from mesokit.run.opened import RunFiles
 from mesokit.seam.method import summary_of
 from mesokit.study import definition
 from mesokit.study import table as tables
@@ -29,10 +30,7 @@ from mesokit.study.names import called
 from mesokit.study.numbers import numbers, words_of
 from mesokit.study.plan import Base, Planned, by_point, checked, make, planned, short_names
 from mesokit.study.plot import curves_of, drawable, find_rows, plot, several
-
-if TYPE_CHECKING:
-    from mesokit.run.opened import RunFiles
-    from mesokit.study.table import Pooled
+from mesokit.study.table import Pooled
 
 
 class Study(Shown):
