@@ -1,13 +1,17 @@
 """Pictures and films of a run, whether it is in memory or read from its files."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mesokit.case.case import Case
 from mesokit.case.component import require_known
-from mesokit.report.flow import Film
 from mesokit.seam.result import Result
+
+if TYPE_CHECKING:  # it loads the libraries of pictures
+    from mesokit.report.flow import Film
 
 
 def flow(
