@@ -1,4 +1,4 @@
-"""What the record of a folder of merged runs says of them."""
+"""Texts about merged runs, from the record of their folder."""
 
 import shlex
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def pooled_words(record: Mapping[str, Any]) -> str:
-    """How many runs were merged, and their seeds; nothing of the record of any other run.
+    """The number of merged runs and their seeds, "" for the record of any other run.
 
     >>> pooled_words({"merged": [{"run": "a", "seed": 1}, {"run": "b", "seed": 4}]})
     'pooled from 2 runs, seeds 1 and 4'
