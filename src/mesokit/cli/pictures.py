@@ -189,9 +189,7 @@ def _usual(files: RunFiles, first: str, choices: Any, in_time: bool) -> str:
 @cli.command()
 @click.argument("run", type=RUN)
 @click.option(
-    "--kind",
-    shell_complete=kinds,
-    help=f"What is drawn: {KIND}.  [what the run has kept]",
+    "--kind", shell_complete=kinds, help=f"What is drawn: {KIND}.  [what the run has kept]"
 )
 @_choices
 @click.option("--fps", type=Finite(), default=15.0, help="Frames shown per second.  [15]")
@@ -204,12 +202,7 @@ def _usual(files: RunFiles, first: str, choices: Any, in_time: bool) -> str:
 @click.option("--output", type=FILE, help="MP4 or GIF (RUN/flow-KIND.mp4 unless said).")
 @click.option("--quiet", is_flag=True, help="No progress; errors only.")
 def animate(
-    run: Path,
-    kind: str | None,
-    fps: float,
-    output: Path | None,
-    quiet: bool,
-    **choices: Any,
+    run: Path, kind: str | None, fps: float, output: Path | None, quiet: bool, **choices: Any
 ) -> None:
     """Make a film of the flow in RUN, from its flow-frames or its trajectory."""
     import mesokit

@@ -206,12 +206,7 @@ def _chains(
 
 
 def _chain_rows(
-    length: int,
-    K: float,
-    found: Transport,
-    gas: Gas,
-    friction: float,
-    frequencies: Sequence[float],
+    length: int, K: float, found: Transport, gas: Gas, friction: float, frequencies: Sequence[float]
 ) -> list[Row]:
     """Times, moduli and viscosity of a fluid that is all chains of a kind."""
     from mesokit import theory

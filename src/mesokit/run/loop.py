@@ -54,11 +54,7 @@ class Loop:
         Rank 0 does so first and keeps them for the other ranks.
         """
         engine = self.replicas.first.engine
-        with (
-            self.stop.at_once(engine.step),
-            telling(progress.compiling),
-            swallowed(Stopped),
-        ):
+        with self.stop.at_once(engine.step), telling(progress.compiling), swallowed(Stopped):
             self.ranks.on_root(lambda: engine.advance(0))
             engine.advance(0)
         note_run(self.schedule.case)

@@ -184,11 +184,7 @@ class RunFiles(Shown, Mapping[str, Result]):
         return write_report(self, path, films)
 
     def plot(
-        self,
-        folder: str | Path | None = None,
-        *,
-        ending: str = ".png",
-        width: float | None = None,
+        self, folder: str | Path | None = None, *, ending: str = ".png", width: float | None = None
     ) -> list[Path]:
         """Draw every result into the folder (that of the run unless said).
 

@@ -140,10 +140,7 @@ def dataframe(rows: Sequence[Pooled]) -> Any:
 def write(rows: Sequence[Pooled], path: str | Path) -> Path:
     """As a CSV file, where a number that is not determined has an empty field. Raises RunError."""
     names = list(dict.fromkeys(name for row in rows for name in row.row()))
-    with (
-        replacing(path) as temporary,
-        temporary.open("w", newline="", encoding="utf-8") as file,
-    ):
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, names)
         writer.writeheader()
         for row in rows:  # nan is the only value that differs from itself
