@@ -216,14 +216,10 @@ def _claim(output: Path, overwrite: bool) -> None:
     if not there or (overwrite and set(there) <= set(own)):
         return
     others = [path.name for path in there if path not in own]
+    hint = "an earlier run; mesokit resume goes on with it, --overwrite replaces it"
     if others:
-        raise CaseError(
-            f"--output {output}: holds other files ({others[0]}); choose another folder"
-        )
-    raise CaseError(
-        f"--output {output}: holds an earlier run; mesokit resume goes on with it, "
-        "--overwrite replaces it"
-    )
+        hint = f"other files ({others[0]}); choose another folder"
+    raise CaseError(f"--output {output}: holds {hint}")
 
 
 def _files_of_run(output: Path) -> list[Path]:
@@ -257,10 +253,8 @@ def _clear(output: Path) -> None:
     run = RunDirectory(output)
     with alone(run if output.is_dir() else None):
         for path in _files_of_run(output):  # in this order: what is left makes a run until the end
-            if path == run.lock_file:
-                continue
             if path.is_dir() and not path.is_symlink():
                 shutil.rmtree(path)
-            else:
+            elif path != run.lock_file:
                 path.unlink(missing_ok=True)
     run.lock_file.unlink(missing_ok=True)
