@@ -14,7 +14,11 @@ from mesokit.cli.commands import COMMANDS
 from mesokit.study.study import Study
 from tests.helpers.commands import SMALL, Captured, ends, refusal
 
-pytestmark = pytest.mark.usefixtures("empty_folder")
+
+@pytest.fixture(autouse=True)
+def folder(empty_folder: Path) -> Path:
+    """Work in an empty folder."""
+    return empty_folder
 
 
 FAR = '[{ quantity = "mean-square-displacement", components = ["x"], max_lag = 90_000 }]'

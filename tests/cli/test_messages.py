@@ -15,7 +15,11 @@ import pytest
 from mesokit.case.case import Case
 from tests.helpers.commands import SMALL, SOURCE, Captured, ends
 
-pytestmark = pytest.mark.usefixtures("empty_folder")
+
+@pytest.fixture(autouse=True)
+def folder(empty_folder: Path) -> Path:
+    """Work in an empty folder."""
+    return empty_folder
 
 
 @pytest.mark.parametrize(

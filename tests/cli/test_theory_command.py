@@ -12,7 +12,11 @@ import pytest
 from mesokit import theory
 from tests.helpers.commands import ROOT, Captured, ends, refusal
 
-pytestmark = pytest.mark.usefixtures("empty_folder")
+
+@pytest.fixture(autouse=True)
+def folder(empty_folder: Path) -> Path:
+    """Work in an empty folder."""
+    return empty_folder
 
 
 @pytest.mark.parametrize(

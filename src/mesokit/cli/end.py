@@ -11,7 +11,7 @@ import click
 from mesokit.cli.commands import cli
 from mesokit.cli.words import frames_of_parts, reason, say, warnings_said
 from mesokit.errors import MesokitError, RunError
-from mesokit.io.shared_work import work_words
+from mesokit.io.record_words import work_words
 from mesokit.processes.signals import Stopped
 from mesokit.processes.world import known, world
 

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+import contextlib
 import signal
-from collections.abc import Callable, Sequence
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from time import perf_counter
 
 from mesokit.case.kind import note_run
 from mesokit.case.run import Run
+from mesokit.kernels.kept import counts
 from mesokit.processes.alone import Coming, Order
 from mesokit.processes.signals import Stopped
 from mesokit.processes.world import World
 from mesokit.report.progress import Reporter
 from mesokit.run.callbacks import Callbacks
-from mesokit.run.compiling import swallowed, telling
 from mesokit.run.folder import Folder
 from mesokit.run.replicas import Replicas
 from mesokit.run.schedule import Leg, Schedule
 from mesokit.run.stop import Stop
 from mesokit.seam.engine import Interrupted
 
+SILENT = 0.7  # seconds of compiling without a message
 CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
 
 
@@ -152,3 +156,44 @@ def next_chunk(steps: int, seconds: float) -> int:
     (20, 40, 1)
     """
     return max(1, min(4 * steps, int(steps * CALL_SECONDS / max(seconds, 1e-9))))
+
+
+@contextlib.contextmanager
+def telling(tell: Callable[[str], None]) -> Iterator[None]:
+    """Call `tell` with the present activity, if it takes long, and again when it changes."""
+    done = threading.Event()
+    made, parts, kernels = counts.parts_made, counts.parts_found, counts.kernels_found
+
+    def doing() -> str:
+        if counts.parts_made > made or counts.compiles_ahead:
+            return "compiling (once; kept for the next runs)"
+        if counts.parts_found > parts:
+            return "compiling from parts that are kept (once)"
+        if counts.kernels_found > kernels:
+            return "loading kernels"
+        return "loading kernels, or waiting for another process that compiles them"
+
+    def look() -> None:
+        last = ""
+        while not done.wait(SILENT):
+            if (words := doing()) != last:
+                tell(words)
+            last = words
+
+    threading.Thread(target=look, daemon=True).start()
+    try:
+        yield
+    finally:
+        done.set()
+
+
+@contextlib.contextmanager
+def swallowed(kind: type[BaseException]) -> Iterator[None]:
+    """Do not print exceptions of a kind that Python drops because C code, such as the compiler,
+    cannot pass them on."""
+    earlier = sys.unraisablehook
+    sys.unraisablehook = lambda told: None if isinstance(told.exc_value, kind) else earlier(told)
+    try:
+        yield
+    finally:
+        sys.unraisablehook = earlier

@@ -18,9 +18,8 @@ from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint, h5md, log_file, tables
 from mesokit.io.frames import require_frames, seen_until
 from mesokit.io.measured import fitting, measured
-from mesokit.io.pooled import merge_again, pooled_words
+from mesokit.io.record_words import merge_again, pooled_words, work_words
 from mesokit.io.run_directory import RunDirectory
-from mesokit.io.shared_work import work_words
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.observe.shared.build_up import result_of
 from mesokit.run import pictures

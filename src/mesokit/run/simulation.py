@@ -15,8 +15,8 @@ from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import blaming
 from mesokit.errors import RunError
 from mesokit.io.one_writer import alone
+from mesokit.io.record_words import shared_work
 from mesokit.io.run_directory import RunDirectory
-from mesokit.io.shared_work import shared_work
 from mesokit.processes.world import world
 from mesokit.report.document.progress import reporter_for
 from mesokit.report.flow import Film

@@ -99,11 +99,9 @@ class Cluster:
 
     @property
     def places(self) -> int:
-        """The number of runs that the workers carry out at once."""
         return max(1, len(self.client.ncores()))
 
     def submit(self, path: Path) -> Any:
-        """Carry the run in a folder, which all workers can read, to its end."""
         run = str(path.resolve())
         return self.client.submit(carry, run, self.threads, self.modules, pure=False)
 
@@ -111,7 +109,6 @@ class Cluster:
         """Runs that are on other machines end with their workers, at their last checkpoints."""
 
     def close(self) -> None:
-        """End the workers that were started here."""
         self.client.close()
         if self.own is not None:
             self.own.close()

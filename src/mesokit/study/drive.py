@@ -88,7 +88,7 @@ def reporter_for(progress: StudyReporter | bool | None) -> StudyReporter:
 
 @dataclass
 class _Work:
-    """A run in terms of what it costs: steps times particles."""
+    """A run and its work: steps times particles."""
 
     run: Planned
     particles: int
@@ -106,11 +106,15 @@ class _Work:
 def drive(
     runs: Sequence[Planned], workers: Workers, progress: StudyReporter
 ) -> list[tuple[Planned, str]]:
-    """Carry the runs that have not ended to their ends; returns those that fail, and why.
+    """Carry the runs that have not ended to their ends; returns those that fail, with reasons.
 
-    Raises Stopped after a signal, once what is in hand has ended at its checkpoints.
+    Raises Stopped after a signal, once the present runs have ended at their checkpoints.
     """
-    works = [_work(run) for run in runs]
+    works = []
+    for run, case in ((run, run.files.case) for run in runs):
+        particles = sum(group.number for group in case.groups)
+        steps = case.run.warmup + case.run.steps
+        works.append(_Work(run, particles, steps, kind_of(case), has_run(case)))
     waiting = [work for work in works if not work.run.ended]
     progress.runs, progress.ended = len(works), len(works) - len(waiting)
     if not waiting:
@@ -158,19 +162,12 @@ def drive(
 
 
 def _seen(works: Sequence[_Work]) -> int:
-    """What is known to have been done of runs that have not ended."""
+    """Work that is known to be done of runs that have not ended."""
     return sum(work.particles * work.seen for work in works)
 
 
-def _work(run: Planned) -> _Work:
-    case = run.files.case
-    particles = sum(group.number for group in case.groups)
-    steps = case.run.warmup + case.run.steps
-    return _Work(run, particles, steps, kind_of(case), has_run(case))
-
-
 def _hand_out(waiting: list[_Work], in_hand: list[_Work], workers: Workers) -> None:
-    """Give out what there is room for; of a kind that is not compiled yet only one at first."""
+    """Submit runs while there are places; of a kind that is not compiled yet only one at first."""
     for work in list(waiting):
         if len(in_hand) >= workers.places:
             return
@@ -183,11 +180,11 @@ def _hand_out(waiting: list[_Work], in_hand: list[_Work], workers: Workers) -> N
 
 
 def _answer(work: _Work, stopped: list[signal.Signals]) -> str:
-    """Why a run has not come to its end, nothing if it has or was stopped with the others."""
+    """Why a run has not ended, "" if it has or was stopped with the others."""
     assert work.future is not None
     try:
         why = str(work.future.result())
-    except Exception as error:  # of what carries it: a node that is gone, a package that is not
+    except Exception as error:  # of its worker: a lost node, a missing package
         why = f"{type(error).__name__}: {error}"
     if why.startswith("stopped") and not stopped:
         stopped.append(signal.SIGINT)

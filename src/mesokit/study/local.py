@@ -32,7 +32,6 @@ class Processes:
         self.stopping = False
 
     def submit(self, path: Path) -> Future[str]:
-        """Carry the run in a folder to its end; the result is that of `work.carry`."""
         return self.pool.submit(self._carry, path)
 
     def _carry(self, path: Path) -> str:
@@ -71,19 +70,20 @@ class Processes:
         apart: Any = {"start_new_session": True}
         if sys.platform == "win32":
             apart = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
-        command = [sys.executable, "-m", "mesokit.study.work", *self.arguments]
-        pipes: Any = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-        paths = os.pathsep.join(["", *filter(None, sys.path)]).lstrip(os.pathsep)
-        environment = os.environ | {"PYTHONPATH": paths}
-        return subprocess.Popen(command, env=environment, encoding="utf-8", **pipes, **apart)
+        return subprocess.Popen(
+            [sys.executable, "-m", "mesokit.study.work", *self.arguments],
+            env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            encoding="utf-8",
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            **apart,
+        )
 
     @property
     def places(self) -> int:
-        """The number of runs at once."""
         return self.jobs
 
     def stop(self) -> None:
-        """Let the present runs end at a checkpoint."""
         self.stopping = True
         for worker in list(self.busy):
             if sys.platform == "win32":
@@ -92,7 +92,6 @@ class Processes:
                 worker.terminate()
 
     def close(self) -> None:
-        """Wait for the present runs, and end all workers."""
         self.pool.shutdown()
         while not self.idle.empty():
             worker = self.idle.get()
@@ -114,7 +113,6 @@ class Here:
         self.threads = threads
 
     def submit(self, path: Path) -> Future[str]:
-        """Carry the run in a folder to its end, before this returns."""
         done: Future[str] = Future()
         done.set_result(carry(str(path), self.threads))
         return done
