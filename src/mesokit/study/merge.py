@@ -24,8 +24,14 @@ from mesokit.seam.pooled import pool
 from mesokit.seam.result import Result
 
 MAY_DIFFER = (  # beginnings of keys
-    "run.seed", "run.replicas", "run.steps", "run.checkpoint_", "trajectory.", "log.", "title",
-)  # fmt: skip
+    "run.seed",
+    "run.replicas",
+    "run.steps",
+    "run.checkpoint_",
+    "trajectory.",
+    "log.",
+    "title",
+)
 
 
 def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:

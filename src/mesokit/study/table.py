@@ -15,10 +15,10 @@ from mesokit.seam.result import Comparison
 from mesokit.statistics import ChiSquare, chi_square
 from mesokit.study.plan import Planned, by_point, pooled_numbers, short_names
 
-NUMBERS = (  # of a Comparison, in the order of the table
+NUMBERS = [  # of a Comparison, in the order of the table
     "measured", "error", "expected", "deviation", "percent", "approximate", "steady",
     "lower_bound", "unit",
-)  # fmt: skip
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
