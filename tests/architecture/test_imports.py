@@ -82,7 +82,7 @@ ROWS = {
     "report/flow/moving_plates.py": ("case", "method.spheres.common.wall", "report"),
     "report/flow/shaded.py": ("report", "kernels.kernel"),
     "run/": ("case", "errors", "io", "observe.shared", "processes", "report", "run", "seam"),
-    "run/compiling.py": ("kernels.kept",),
+    "run/loop.py": ("case", "kernels.kept", "processes", "report", "run", "seam"),
     "run/warm.py": ("case", "kernels", "run"),
     "study/": (
         "case", "errors", "io", "observe.shared", "processes", "report", "run", "seam",

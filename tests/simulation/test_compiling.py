@@ -19,7 +19,7 @@ from mesokit.case.methods import templates
 from mesokit.kernels.kept import Counts
 from mesokit.kernels.store import Store
 from mesokit.processes.signals import Stopped
-from mesokit.run import compiling
+from mesokit.run import loop
 
 SOURCE = str(Path(mesokit.__file__).parent.parent)
 CASE = """
@@ -121,9 +121,9 @@ def test_check_says_that_compiling_is_ahead(case_file, tmp_path):
 def test_what_is_done_before_the_first_step_is_said_when_it_changes(monkeypatch):
     """A start that only loads kernels is never said to compile."""
     counts, said = Counts(), queue.SimpleQueue()
-    monkeypatch.setattr(compiling, "counts", counts)
-    monkeypatch.setattr(compiling, "SILENT", 0.001)
-    with compiling.telling(said.put):
+    monkeypatch.setattr(loop, "counts", counts)
+    monkeypatch.setattr(loop, "SILENT", 0.001)
+    with loop.telling(said.put):
         assert said.get() == "loading kernels, or waiting for another process that compiles them"
         counts.kernels_found = 1
         assert said.get() == "loading kernels"

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from mesokit import Study
 from mesokit.study.local import Here
+from tests.helpers.studies import FORCE
 
 CASE = """
 title = "a channel"
@@ -47,3 +49,12 @@ def case_file(tmp_path_factory) -> Path:
     path = tmp_path_factory.mktemp("study") / "channel.toml"
     path.write_text(CASE)
     return path
+
+
+@pytest.fixture(scope="session")
+def study(case_file, tmp_path_factory) -> Study:
+    """Two forces, three seeds, two at once; the flow has not built up, and is weak."""
+    output = tmp_path_factory.mktemp("studies") / "study"
+    study = Study(case_file, {FORCE: [0.02, 0.04]}, seeds=3, output=output)
+    study.run(jobs=2)
+    return study

@@ -1,4 +1,4 @@
-"""The command check, which looks at a case without running it."""
+"""The command check: a case and its derived numbers, without a run."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def check(
 
 
 def _draw(full: Case, case: Path, picture: str, axes: tuple[str, ...] | None) -> Path:
-    """Draw what a case starts from, without a step."""
+    """Draw the first state of a case, without a step."""
     from mesokit.report import save_figure
     from mesokit.run.simulation import Simulation
 

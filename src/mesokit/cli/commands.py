@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import importlib
 import math
 import os
@@ -23,12 +24,11 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 
-MODULES = {  # what is here, and the commands that each has
+MODULES = {  # files of this folder, and the commands in each
     "check": ("check",),
-    "runs": ("run", "resume", "info", "export"),
+    "runs": ("run", "resume", "info", "export", "report", "table"),
     "studies": ("study", "merge"),
     "pictures": ("plot", "animate"),
-    "documents": ("report", "table"),
     "reference": ("new", "schema", "explain"),
     "theory": ("theory",),
     "compiled": ("warm", "cache"),
@@ -41,28 +41,24 @@ class Finite(click.FloatRange):
 
     def __init__(self, least: float | None = None, most: float | None = None) -> None:
         super().__init__(least, most)
-        self.name = "float range" if least is not None else "float"  # as the help calls it
+        self.name = "float range" if least is not None else "float"  # in the help
 
     def _describe_range(self) -> str:
-        """For the help: no bounds are not described."""
         return super()._describe_range() if self.min is not None else ""
 
     def convert(self, value: Any, option: click.Parameter | None, context: Any) -> Any:
-        """The number. Raises click.BadParameter, as for one out of bounds."""
         number = super().convert(value, option, context)
         return number if math.isfinite(number) else self.fail(f"{value} is no number", option)
 
 
 class Commands(click.Group):
-    """The commands of COMMANDS: each registers itself when its module is imported, on its first use
-    or for a list of all."""
+    """The commands of COMMANDS, in alphabetical order. The module of a command is imported on its
+    first use, or for a list of all."""
 
     def list_commands(self, context: click.Context) -> list[str]:
-        """All names, in alphabetical order."""
         return sorted(COMMANDS)
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        """The command of that name, None if there is none."""
         if name in COMMANDS:
             importlib.import_module(f"{__package__}.{COMMANDS[name]}")
         return super().get_command(context, name)
@@ -91,37 +87,47 @@ def cli(context: click.Context, modules: Sequence[str]) -> None:
     take_part(context.invoked_subcommand)
     for module in modules:
         sys.path[:0] = [os.getcwd()] if os.getcwd() not in sys.path else []
-        module = module.removesuffix(".py")  # as a file of this folder is called
+        module = module.removesuffix(".py")  # the name of a file works as well
         if not all(part.isidentifier() for part in module.split(".")):
             raise CaseError(f"--import {module!r}: expected the name of a module, such as mine")
         try:
             importlib.import_module(module)
         except ImportError as error:
             raise CaseError(f"--import {module}: {error}") from None
-        except (Exception, SystemExit) as error:  # whatever the code of a user does
+        except (Exception, SystemExit) as error:  # code of users may raise anything
             last = frames_of_parts(error)[-1:]
             where = "".join(f" (line {frame.lineno} of {frame.filename})" for frame in last)
             why = f"{type(error).__name__}: {error}{where}"
             raise CaseError(f"--import {module}: {why}") from None
 
 
-CASE = click.Path(dir_okay=False, path_type=Path)
+CASE = FILE = click.Path(dir_okay=False, path_type=Path)
 FORMATS = ("png", "pdf", "svg")  # of figures
 RUN = click.Path(file_okay=False, path_type=Path)
 
 
-def _settings(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
-    for text in values:
-        if "=" not in text:
-            raise CaseError(f"--set {text}: expected key=value, such as fluid.density=5")
-    return {key.strip(): value.strip() for key, _, value in (t.partition("=") for t in values)}
+def pairs(form: str) -> Any:
+    """The callback of an option that may be repeated: a dictionary of its texts KEY=VALUE."""
+
+    def split(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
+        for text in values:
+            if "=" not in text:
+                raise CaseError(f"{option.opts[0]} {text}: expected {form}")
+        return {key.strip(): value.strip() for key, _, value in (t.partition("=") for t in values)}
+
+    return split
+
+
+def options(*given: Any) -> Any:
+    """A decorator of commands for several options, in this order."""
+    return lambda command: functools.reduce(lambda made, one: one(made), reversed(given), command)
 
 
 SET = click.option(
     "--set",
     "settings",
     multiple=True,
-    callback=_settings,
+    callback=pairs("key=value, such as fluid.density=5"),
     shell_complete=keys,
     metavar="KEY=VALUE",
     help="Replace a value of the case, such as fluid.density=5. May be repeated.",
@@ -155,14 +161,14 @@ def naming(path: Path) -> Iterator[None]:
 
 
 def is_study(folder: Path) -> bool:
-    """Whether a study lies in a folder."""
+    """True if a study is in the folder."""
     from mesokit.io.run_directory import RunDirectory
 
     return RunDirectory(folder).study_file.exists()
 
 
 def require_run(run: Path) -> None:
-    """Raise CaseError, as the command is wrong, if there is no run in the folder."""
+    """Raise CaseError, because the command is wrong, if there is no run in the folder."""
     from mesokit.io.run_directory import RunDirectory
 
     try:
@@ -172,7 +178,7 @@ def require_run(run: Path) -> None:
 
 
 def result_named(files: Any, name: str) -> Any:
-    """The result of a run that --result names; CaseError says which there are."""
+    """The result of a run that --result names; CaseError lists the results."""
     if name in files:
         return files[name]
     from mesokit.case.component import nearest
@@ -183,7 +189,7 @@ def result_named(files: Any, name: str) -> Any:
 
 FITS = click.Choice(["line", "power"])
 LOGS = click.Choice(["x", "y", "x,y"])
-OF_DEPENDENCE = (
+dependence = options(  # of a study: the number that is drawn, and how
     click.option("--x", metavar="KEY", help="Draw against this key (the first unless said)."),
     click.option(
         "--y",
@@ -194,10 +200,3 @@ OF_DEPENDENCE = (
     click.option("--log", type=LOGS, help="Logarithmic axes of it."),
     click.option("--linear", is_flag=True, help="Linear axes of it."),
 )
-
-
-def dependence(command: Any) -> Any:
-    """The options that say which number of a study is drawn, and how."""
-    for option in reversed(OF_DEPENDENCE):
-        command = option(command)
-    return command

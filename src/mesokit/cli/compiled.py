@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from mesokit.cli.commands import CASE, SET, cli
+from mesokit.cli.commands import CASE, FILE, SET, cli
 from mesokit.cli.together import on_ranks
 from mesokit.cli.words import say, show_table
 from mesokit.errors import CaseError, MesokitError, RunError
@@ -54,7 +54,7 @@ def warm(
 @click.option(
     "--export",
     "file",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=FILE,
     help="Write all parts to a file, for a package (see docs: releasing).",
 )
 def cache(clear: bool, file: Path | None) -> None:
@@ -85,20 +85,20 @@ def cache(clear: bool, file: Path | None) -> None:
             raise RunError(f"--export {file}: {error}") from None
         click.echo(f"{number} parts, {size_text(file.stat().st_size)}: {file}")
         return
-    here, came = kept(), shipped_file()
-    own, shipped = here.own, here.shipped
+    own, shipped = kept().own, kept().shipped
     if own is None:
-        click.echo(f"store: none: {here.trouble}")
+        click.echo(f"store: none: {kept().trouble}")
     else:
         click.echo(f"store: {own.file}{'' if own.writes else ' (can only be read)'}")
         counted = own.counts()
-        rows = [
-            ("size", size_text(own.size), f"at most {size_text(store.BOUND)}"),
-            ("kernels", str(counted["kernels"]), "machine code for this processor"),
-            ("stages", str(counted["stages"]), "machine code that kernels share"),
-            ("parts", str(counted["parts"]), "for all kernels to be made of"),
-            ("kinds of case", str(counted["kinds"]), "that have run here"),
-        ]
-        show_table(rows)
+        show_table(
+            [
+                ("size", size_text(own.size), f"at most {size_text(store.BOUND)}"),
+                ("kernels", str(counted["kernels"]), "machine code for this processor"),
+                ("stages", str(counted["stages"]), "machine code that kernels share"),
+                ("parts", str(counted["parts"]), "for all kernels to be made of"),
+                ("kinds of case", str(counted["kinds"]), "that have run here"),
+            ]
+        )
     holds = f"{shipped.counts()['parts']} parts in" if shipped else "none; they would be in"
-    click.echo(f"with the package: {holds} {came}")
+    click.echo(f"with the package: {holds} {shipped_file()}")

@@ -1,19 +1,23 @@
-"""How every command ends: at most one line on standard error, and a status."""
+"""End of every command: at most one line on standard error, and a status."""
 
+import contextlib
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import click
 
 from mesokit.cli.commands import cli
 from mesokit.cli.words import frames_of_parts, reason, say, warnings_said
 from mesokit.errors import MesokitError, RunError
+from mesokit.io.record_words import work_words
+from mesokit.processes.signals import Stopped
 from mesokit.processes.world import known, world
 
 
 def status_of(arguments: Sequence[str] | None) -> int:
-    """Run a command and say what went wrong; the exit status."""
+    """Run a command and print what went wrong; the exit status."""
     try:
         status = _carried_out(sys.argv[1:] if arguments is None else list(arguments))
     except SystemExit as end:
@@ -53,7 +57,7 @@ def _carried_out(arguments: list[str]) -> int:
         return _failed("not enough memory for this case (mesokit check tells what it needs)", 1)
     except Exception as error:
         frames = frames_of_parts(error)
-        if not frames:  # a fault of mesokit's own: all of it is shown
+        if not frames:  # an error of mesokit itself: the whole traceback is shown
             raise
         last = frames[-1]
         why = f"{type(error).__name__}: {error}"
@@ -72,3 +76,33 @@ def _interrupted(stop: KeyboardInterrupt) -> int:
     status: int = getattr(stop, "status", 130)
     world().leave(lambda rank: say(f"mesokit: {rank}interrupted"), status)
     return status
+
+
+@contextlib.contextmanager
+def stopping(again: str) -> Iterator[None]:
+    """Print the command by which stopped work goes on; a full disk is an error of the run."""
+    try:
+        yield
+    except Stopped as stop:
+        if not str(stop):  # stopped at once by a second signal
+            raise
+        here, text = world(), str(stop)
+        command = here.again(again)
+        here.leave(lambda rank: say(f"mesokit: {rank}{text}; go on with: {command}"), stop.status)
+        raise SystemExit(stop.status) from None
+    except OSError as error:
+        raise RunError(reason(error)) from None
+
+
+def show_results(output: Path) -> None:
+    """Print the comparisons of a run, and the names of its pictures."""
+    import mesokit
+
+    done = mesokit.open(output)
+    for line in work_words(done.provenance):
+        click.echo(line)
+    for result in done.results.values():
+        for comparison in result.comparisons:
+            click.echo(f"{result.name}: {comparison}")
+    for picture in sorted(output.glob("*.png")):
+        click.echo(f"picture: {picture}")

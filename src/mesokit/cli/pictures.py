@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from mesokit.cli.commands import (
+    FILE,
     FORMATS,
     RUN,
     Finite,
@@ -17,6 +17,7 @@ from mesokit.cli.commands import (
     cli,
     dependence,
     is_study,
+    options,
     require_run,
     result_named,
 )
@@ -28,8 +29,7 @@ if TYPE_CHECKING:
     from mesokit.run.opened import RunFiles
 
 KIND = "quiver, streamlines, particles, density, speed, vorticity, four, disks or flock"
-FILE = click.Path(dir_okay=False, path_type=Path)
-SHORT, LONG = 2.0, 5  # seconds: a film that lasts less is hardly seen; what it is slowed down to
+SHORT, LONG = 2.0, 5  # seconds: of a film too short to be seen, and slowed down
 
 
 def _ranges(context: click.Context, option: click.Parameter, text: str | None) -> Any:
@@ -56,7 +56,7 @@ def _window(context: click.Context, option: click.Parameter, text: str | None) -
     return ranges and ranges[0]
 
 
-CHOICES: Sequence[Callable[[Any], Any]] = (
+_choices = options(  # the part of the flow that is drawn
     click.option(
         "--region",
         callback=_ranges,
@@ -87,13 +87,6 @@ CHOICES: Sequence[Callable[[Any], Any]] = (
         help="Of spheres: speed, log-speed, relative-speed, spin, neighbours, psi6, kind.  [speed]",
     ),
 )
-
-
-def _choices(command: Any) -> Any:
-    """The options that say what of the flow is drawn."""
-    for option in reversed(CHOICES):
-        command = option(command)
-    return command
 
 
 @cli.command()
@@ -136,10 +129,9 @@ def plot(run: Path, output: Path | None, width: float | None, **given: Any) -> N
     elif name is not None:
         from mesokit.report import save
 
-        result = result_named(files, name)
         path = output or files.path / f"{name}{ending}"
-        origin = files.path.resolve().name
-        click.echo(save(result, path, files.case, width=width, run=origin))
+        run_name = files.path.resolve().name
+        click.echo(save(result_named(files, name), path, files.case, width=width, run=run_name))
     else:
         for picture in files.plot(ending=ending, width=width):
             click.echo(picture)
@@ -160,8 +152,7 @@ def _plot_study(
     if not study.ended:
         say(f"{path}: {sum(run.ended for run in study.runs)} of {len(study)} runs have ended")
     if chosen["y"]:
-        picture = draw_number(study, chosen, ending=ending, path=output, width=width)
-        return click.echo(picture)
+        return click.echo(draw_number(study, chosen, ending=ending, path=output, width=width))
     if output is not None:
         raise CaseError(f"--output {output}: there are many pictures; add --y NUMBER")
     pictures = study.save_pictures(ending, width=width)
@@ -186,7 +177,7 @@ def _require_one(kind: str | None, name: str | None, output: Path | None, given:
 
 
 def _usual(files: RunFiles, first: str, choices: Any, in_time: bool) -> str:
-    """The kind of picture that a run has kept enough for."""
+    """The kind of picture for which the files of a run have enough."""
     from mesokit.report.flow import usual
     from mesokit.report.flow.region import View
     from mesokit.report.flow.source import sources
@@ -198,9 +189,7 @@ def _usual(files: RunFiles, first: str, choices: Any, in_time: bool) -> str:
 @cli.command()
 @click.argument("run", type=RUN)
 @click.option(
-    "--kind",
-    shell_complete=kinds,
-    help=f"What is drawn: {KIND}.  [what the run has kept]",
+    "--kind", shell_complete=kinds, help=f"What is drawn: {KIND}.  [what the run has kept]"
 )
 @_choices
 @click.option("--fps", type=Finite(), default=15.0, help="Frames shown per second.  [15]")
@@ -213,12 +202,7 @@ def _usual(files: RunFiles, first: str, choices: Any, in_time: bool) -> str:
 @click.option("--output", type=FILE, help="MP4 or GIF (RUN/flow-KIND.mp4 unless said).")
 @click.option("--quiet", is_flag=True, help="No progress; errors only.")
 def animate(
-    run: Path,
-    kind: str | None,
-    fps: float,
-    output: Path | None,
-    quiet: bool,
-    **choices: Any,
+    run: Path, kind: str | None, fps: float, output: Path | None, quiet: bool, **choices: Any
 ) -> None:
     """Make a film of the flow in RUN, from its flow-frames or its trajectory."""
     import mesokit

@@ -1,4 +1,4 @@
-"""Commands that say what a case file may say: new, schema, explain."""
+"""Commands about the contents of case files: new, schema, explain."""
 
 import re
 from collections.abc import Iterable
@@ -7,13 +7,11 @@ from pathlib import Path
 import click
 
 from mesokit.case import methods
-from mesokit.cli.commands import cli
+from mesokit.cli.commands import FILE, cli
 from mesokit.cli.completion import beginning
 from mesokit.errors import CaseError
 
-TEMPLATES = methods.templates()
-EXAMPLES = methods.examples()
-STUDIES = methods.studies()
+TEMPLATES, EXAMPLES, STUDIES = methods.templates(), methods.examples(), methods.studies()
 KNOWN = TEMPLATES | EXAMPLES | STUDIES
 
 
@@ -59,14 +57,13 @@ def new(name: str, path: str | None, template: str | None) -> None:
     if template is None:
         listed = f" (give one of them, or --template: {_listed(KNOWN)})"
         raise CaseError(f"{name}: no such template{nearest(file.stem, KNOWN) or listed}")
-    written = _write_study(template, file) if template in STUDIES else [file]
-    if template not in STUDIES:
-        _write_case(template, file)
+    is_study = template in STUDIES
+    written = _write_study(template, file) if is_study else _write_case(template, file)
     from mesokit.case.describe.kept import schema_text
     from mesokit.io.atomic import write_text
 
     write_text(file.with_name(SCHEMA), schema_text())  # for the parts that are installed now
-    command = "study" if template in STUDIES else "run"
+    command = "study" if is_study else "run"
     click.echo(
         f"wrote {' and '.join(map(str, written))} (and {SCHEMA}, for editors); "
         f"next: mesokit check {written[-1]}, mesokit {command} {file}"
@@ -88,14 +85,15 @@ def _write_study(template: str, file: Path) -> list[Path]:
     return [file, case]
 
 
-def _write_case(template: str, file: Path) -> None:
-    """A case, and the files that it names, such as a picture of solids."""
+def _write_case(template: str, file: Path) -> list[Path]:
+    """Write a case, and the files that it names, such as a picture of solids; the case."""
     text, source = _named(template, file), KNOWN[template]
     _create(file, f"#:schema ./{SCHEMA}\n{text}")
     for other in re.findall(r'^(?:file|bonds) = "([\w.-]+)"', text, flags=re.M):
         beside = file.with_name(other)
         if not beside.exists():
             beside.write_bytes((source.parent / other).read_bytes())
+    return [file]
 
 
 def _named(template: str, file: Path) -> str:
@@ -115,9 +113,7 @@ def _create(file: Path, text: str) -> None:
 
 
 @cli.command()
-@click.option(
-    "--output", type=click.Path(dir_okay=False, path_type=Path), help="File (the screen if none)."
-)
+@click.option("--output", type=FILE, help="File (the screen if none).")
 def schema(output: Path | None) -> None:
     """Write the JSON schema of case files, by which editors complete and check them.
 

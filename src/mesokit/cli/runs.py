@@ -1,4 +1,4 @@
-"""Commands on runs: run, resume, info, export."""
+"""Commands on runs: run, resume, info, export, report, table."""
 
 import contextlib
 import shutil
@@ -8,6 +8,7 @@ import click
 
 from mesokit.cli.commands import (
     CASE,
+    FILE,
     FORMATS,
     JSON,
     RUN,
@@ -18,14 +19,15 @@ from mesokit.cli.commands import (
     naming,
     read,
     require_run,
+    result_named,
 )
-from mesokit.cli.outcome import show_results, stopping
+from mesokit.cli.end import show_results, stopping
 from mesokit.cli.together import on_ranks
 from mesokit.cli.words import READING, in_json, patience, say
 from mesokit.errors import CaseError
 from mesokit.processes.world import world
 
-NOT_REACHED = 3  # exit status of a run that had to end before an error was as small as was asked
+NOT_REACHED = 3  # exit status of a run that ended before an error was small enough
 
 
 @cli.command()
@@ -157,7 +159,7 @@ def info(run: Path, as_json: bool) -> None:
 @click.option(
     "--to",
     "path",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=FILE,
     required=True,
     help="The file: .gsd, .lammpstrj, .xyz, .h5md, .dcd, .xtc, .trr or .data.",
 )
@@ -169,6 +171,42 @@ def export(run: Path, path: Path) -> None:
     click.echo(mesokit.open(run).export(path))
 
 
+@cli.command()
+@click.argument("what", type=RUN, metavar="RUN|STUDY")
+@click.option("--output", type=FILE, help="The file (report.html in the folder unless said).")
+@click.option("--films", is_flag=True, help="Put small films into the file; else they are linked.")
+def report(what: Path, output: Path | None, films: bool) -> None:
+    """Write one HTML file with the case, all numbers and all figures of RUN or STUDY."""
+    import mesokit
+
+    if is_study(what):
+        if films:
+            raise CaseError(f"--films: only of a run; {what} holds a study")
+        click.echo(mesokit.Study.open(what).report(output))
+        return
+    require_run(what)
+    click.echo(mesokit.open(what).report(output, films))
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+@click.option("--result", metavar="NAME", help="All values of this result; else all comparisons.")
+@click.option("--output", type=FILE, help="The file (on the screen unless said).")
+def table(run: Path, result: str | None, output: Path | None) -> None:
+    """Write the comparisons of RUN, or the values of one result, as CSV."""
+    import mesokit
+    from mesokit.io.atomic import write_text
+    from mesokit.io.tables import result_text, rows_text
+
+    require_run(run)
+    files = mesokit.open(run)
+    own = None if result is None else result_named(files, result)
+    text = rows_text(files.results) if own is None else result_text(own)
+    if output is None:
+        return click.echo(text, nl=False)
+    click.echo(write_text(output, text))
+
+
 def _claim(output: Path, overwrite: bool) -> None:
     """Refuse a folder that holds something, unless it is an earlier run to be replaced."""
     if output.exists() and not output.is_dir():
@@ -178,18 +216,14 @@ def _claim(output: Path, overwrite: bool) -> None:
     if not there or (overwrite and set(there) <= set(own)):
         return
     others = [path.name for path in there if path not in own]
+    hint = "an earlier run; mesokit resume goes on with it, --overwrite replaces it"
     if others:
-        raise CaseError(
-            f"--output {output}: holds other files ({others[0]}); choose another folder"
-        )
-    raise CaseError(
-        f"--output {output}: holds an earlier run; mesokit resume goes on with it, "
-        "--overwrite replaces it"
-    )
+        hint = f"other files ({others[0]}); choose another folder"
+    raise CaseError(f"--output {output}: holds {hint}")
 
 
 def _files_of_run(output: Path) -> list[Path]:
-    """What an earlier run has written into a folder; the case, which makes it a run, is last."""
+    """Files of an earlier run in a folder; the case, which makes the folder a run, is last."""
     from mesokit.case.case import Case
     from mesokit.io.log_file import ASIDE
     from mesokit.io.run_directory import RunDirectory
@@ -198,18 +232,17 @@ def _files_of_run(output: Path) -> list[Path]:
     run = RunDirectory(output)
     if not run.case_file.is_file():
         return []
-    figures: list[Path] = []
+    figures = [run.flow_file(kind, ".png") for kind in KINDS]
     with contextlib.suppress(CaseError):
-        figures = [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
-    figures += [run.flow_file(kind, ".png") for kind in KINDS]
-    figures = [figure.with_suffix(f".{end}") for figure in figures for end in FORMATS]
-    figures += [run.flow_file(kind, end) for kind in KINDS for end in (".mp4", ".gif")]
-    files = [run.data_file, run.checkpoint_file, run.log_file, run.report_file]
-    files += [run.provenance_file]
-    files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming]
-    files += [run.progress_file, run.lock_file, run.case_file]
-    figures += output.glob(f"{ASIDE}*.csv")
-    return [*figures, *output.glob(".*.tmp"), *run.files_of_parts(), *files]
+        figures += [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
+    return [
+        *(figure.with_suffix(f".{end}") for figure in figures for end in FORMATS),
+        *(run.flow_file(kind, end) for kind in KINDS for end in (".mp4", ".gif")),
+        *output.glob(f"{ASIDE}*.csv"), *output.glob(".*.tmp"), *run.files_of_parts(),
+        run.data_file, run.checkpoint_file, run.log_file, run.report_file, run.provenance_file,
+        run.trajectory_folder, run.trajectory_remains, run.trajectory_coming,
+        run.progress_file, run.lock_file, run.case_file,
+    ]  # fmt: skip
 
 
 def _clear(output: Path) -> None:
@@ -220,10 +253,8 @@ def _clear(output: Path) -> None:
     run = RunDirectory(output)
     with alone(run if output.is_dir() else None):
         for path in _files_of_run(output):  # in this order: what is left makes a run until the end
-            if path == run.lock_file:
-                continue
             if path.is_dir() and not path.is_symlink():
                 shutil.rmtree(path)
-            else:
+            elif path != run.lock_file:
                 path.unlink(missing_ok=True)
     run.lock_file.unlink(missing_ok=True)

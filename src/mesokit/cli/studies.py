@@ -7,17 +7,10 @@ from typing import Any
 
 import click
 
-from mesokit.cli.commands import RUN, SET, cli, dependence, require_run
-from mesokit.cli.outcome import show_results, stopping
+from mesokit.cli.commands import RUN, SET, cli, dependence, pairs, require_run
+from mesokit.cli.end import show_results, stopping
 from mesokit.cli.words import patience, say, show_table
 from mesokit.errors import CaseError, RunError
-
-
-def _options(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
-    for text in values:
-        if "=" not in text:
-            raise CaseError(f"--{option.name} {text}: expected name=value, such as queue=long")
-    return {name.strip(): value.strip() for name, _, value in (t.partition("=") for t in values)}
 
 
 def _axes(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
@@ -54,7 +47,7 @@ def _axes(context: click.Context, option: click.Parameter, values: Sequence[str]
     "--cluster-option",
     "options",
     multiple=True,
-    callback=_options,
+    callback=pairs("name=value, such as queue=long"),
     metavar="NAME=VALUE",
     help="Of the jobs of a cluster, such as walltime=10:00:00. May be repeated.",
 )
@@ -70,15 +63,17 @@ def study(what: Path, **given: Any) -> None:
     every number against the first key that is varied.
     """
     require_number(given)
-    from mesokit.study.job_array import write_job_array
+    from mesokit.study.cluster import write_job_array
+    from mesokit.study.drive import StudyReporter
     from mesokit.study.study import Study
 
     with patience("checking the cases of all runs", given["quiet"]):
         made = _made(Study, what, given)
     if given["listing"]:
-        return show_table([(str(i + 1), run.state, str(run.path)) for i, run in _numbered(made)])
+        rows = enumerate(made.runs, start=1)
+        return show_table([(str(number), run.state, str(run.path)) for number, run in rows])
     if given["job_array"]:
-        script = write_job_array(made, given["threads"])
+        script = write_job_array(made.path, len(made.runs), given["threads"])
         return click.echo(f"wrote {script}; next: sbatch {shlex.quote(str(script))}")
     if given["only"] is not None:
         return _only(made, given["only"], given["threads"])
@@ -90,7 +85,10 @@ def study(what: Path, **given: Any) -> None:
     failed = None
     with stopping(f"mesokit study {shlex.quote(str(made.path))}"):
         try:
-            _run(made, given)
+            if given["options"] and not given["cluster"]:
+                raise CaseError("--cluster-option: only with --cluster")
+            own = {name: given[name] for name in ("threads", "cluster", "options")}
+            made.run(given["jobs"], progress=StudyReporter(given["quiet"]), **own)
         except RunError as error:
             if not any(run.ended for run in made.runs):
                 raise
@@ -102,7 +100,10 @@ def study(what: Path, **given: Any) -> None:
 
 def _made(Study: Any, what: Path, given: dict[str, Any]) -> Any:
     """The study of a case file, of a study file or in a folder."""
-    if what.is_dir() or _is_study_file(what):
+    from mesokit.case import toml
+
+    data = toml.parse(toml.read(what)) if what.is_file() else {}
+    if what.is_dir() or isinstance(data.get("case"), str):  # a study, or its file
         options = {"axes": "vary", "seeds": "seeds", "settings": "set"}
         if what.is_dir():
             options["output"] = "output"
@@ -118,28 +119,6 @@ def _made(Study: Any, what: Path, given: dict[str, Any]) -> Any:
         output=output,
         settings=given["settings"],
         write=not given["listing"],
-    )
-
-
-def _is_study_file(path: Path) -> bool:
-    from mesokit.case import toml
-
-    data = toml.parse(toml.read(path)) if path.is_file() else {}
-    return isinstance(data.get("case"), str)
-
-
-def _run(made: Any, given: dict[str, Any]) -> None:
-    from mesokit.study.drive import StudyReporter
-
-    options = given["options"]
-    if options and not given["cluster"]:
-        raise CaseError("--cluster-option: only with --cluster")
-    made.run(
-        given["jobs"],
-        threads=given["threads"],
-        cluster=given["cluster"],
-        options=options,
-        progress=StudyReporter(given["quiet"]),
     )
 
 
@@ -161,10 +140,7 @@ def _show(made: Any, given: dict[str, Any]) -> None:
         for line in made.lines():
             click.echo(line)
     click.echo(f"table: {table}")
-    if given["y"]:
-        picture = draw_number(made, given)
-        return click.echo(f"picture: {picture}")
-    for path in made.save_pictures():
+    for path in [draw_number(made, given)] if given["y"] else made.save_pictures():
         click.echo(f"picture: {path}")
 
 
@@ -192,10 +168,6 @@ def first_key(made: Any) -> str:
     if not made.keys:
         raise CaseError("--y: nothing is varied that it could be drawn against")
     return str(made.keys[0])
-
-
-def _numbered(made: Any) -> Any:
-    return list(enumerate(made.runs))
 
 
 @cli.command()

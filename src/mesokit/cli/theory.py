@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mesokit.case.amounts import number
-from mesokit.cli.commands import CASE, SET, Finite, cli, naming, read
+from mesokit.cli.commands import CASE, SET, Finite, cli, naming, options, read
 from mesokit.cli.words import show_table
 from mesokit.errors import CaseError
 
@@ -50,15 +50,16 @@ def _moved(context: click.Context, option: click.Parameter, given: str | None) -
         raise CaseError(f"{option.opts[0]}: unknown option; {SCRIPT} draws the figures of chains")
 
 
-def _options(command: Any) -> Any:
-    """An option for each of KEYS, and the refusal of those of figures."""
-    for name in FIGURES:
-        moved = click.option(f"--{name}", hidden=True, expose_value=False, callback=_moved)
-        command = moved(command)
-    for name, key in reversed(KEYS.items()):
-        says = click.option(OPTIONS[key], name, metavar="VALUE", help=f"Value of {key}.")
-        command = says(command)
-    return command
+_options = options(
+    *(
+        click.option(OPTIONS[key], name, metavar="VALUE", help=f"Value of {key}.")
+        for name, key in KEYS.items()
+    ),
+    *(
+        click.option(f"--{name}", hidden=True, expose_value=False, callback=_moved)
+        for name in reversed(FIGURES)
+    ),
+)
 
 
 def _numbers(name: str, parameter: str, text: str) -> Any:
@@ -95,8 +96,8 @@ def theory(
     """
     from mesokit.theory import self_diffusion
 
-    options = {KEYS[name]: value for name, value in given.items() if value is not None}
-    case = _case(path, dimension, options | settings)
+    values = {KEYS[name]: value for name, value in given.items() if value is not None}
+    case = _case(path, dimension, values | settings)
     with naming(path) if path else contextlib.nullcontext():
         found, gas, rows = _fluid(case)
     stirring = found.diffusion
@@ -205,12 +206,7 @@ def _chains(
 
 
 def _chain_rows(
-    length: int,
-    K: float,
-    found: Transport,
-    gas: Gas,
-    friction: float,
-    frequencies: Sequence[float],
+    length: int, K: float, found: Transport, gas: Gas, friction: float, frequencies: Sequence[float]
 ) -> list[Row]:
     """Times, moduli and viscosity of a fluid that is all chains of a kind."""
     from mesokit import theory

@@ -11,12 +11,12 @@ from typing import Any
 import click
 
 from mesokit.errors import CaseError, RunError
-from mesokit.processes import launcher, parent
-from mesokit.processes.world import stay_alone, world
+from mesokit.processes import parent
+from mesokit.processes.world import is_first, may_be_several, stay_alone, world
 
 TOGETHER = ("run", "resume", "warm")  # all others are commands of one process
-ALONE = ("study",)  # those that would start runs of their own
-MOST_OF_CORE = 16  # ranks: the machine would be busy with starting them
+ALONE = ("study",)  # commands that start runs of their own
+MOST_OF_CORE = 16  # ranks: more would keep the machine busy with starting them
 RANKS = click.option(
     "--ranks",
     type=click.IntRange(1),
@@ -26,8 +26,8 @@ Command = Callable[..., Any]
 
 
 def take_part(command: str | None) -> None:
-    """Have all ranks of a launcher in a command that they carry out together, and one in others."""
-    if not launcher.several():
+    """Let all ranks of a launcher carry out commands that share work, and rank 0 all others."""
+    if not may_be_several():
         return
     if command in TOGETHER:
         here = world()
@@ -36,7 +36,7 @@ def take_part(command: str | None) -> None:
         else:
             sys.stdout = sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
         return
-    if not launcher.first():
+    if not is_first():
         raise SystemExit(0)
     stay_alone()
     if command in ALONE:
@@ -46,7 +46,7 @@ def take_part(command: str | None) -> None:
 def on_ranks(folder: Callable[[dict[str, Any]], Path]) -> Callable[[Command], Command]:
     """Give a command `--ranks N`: ranks of this machine then carry it out.
 
-    `folder` says from what is given where the run is.
+    `folder` gives the folder of the run from the options.
     """
 
     def decorated(command: Command) -> Command:
@@ -69,7 +69,7 @@ def _carried_by(ranks: int, arguments: Sequence[str], output: Path) -> int:
     from mesokit.processes.cores import usable_cores
     from mesokit.processes.mpiexec import find, start
 
-    if launcher.several():
+    if may_be_several():
         raise CaseError("--ranks: this is one of the ranks of an mpiexec; leave it out")
     find()
     cores = usable_cores()
@@ -103,7 +103,7 @@ def without(arguments: Sequence[str], option: str) -> list[str]:
 
 
 def _go_on(output: Path, ranks: int) -> str:
-    """From where a run can go on, and how; nothing if it had not begun."""
+    """The last checkpoint of a run, and the command that goes on; "" if it had not begun."""
     from mesokit.io.checkpoint import read_meta
     from mesokit.io.run_directory import RunDirectory
 

@@ -1,4 +1,4 @@
-"""Numbers, tables and reasons in words."""
+"""Texts that commands print: tables, JSON, warnings and reasons of errors."""
 
 import contextlib
 import errno
@@ -42,7 +42,7 @@ def warnings_said() -> Iterator[None]:
 
 @contextlib.contextmanager
 def patience(why: str, quiet: bool = False) -> Iterator[None]:
-    """Say why it takes so long, where it does and anything is to be said."""
+    """Print why it takes so long, if it does and the command is not quiet."""
     timer = threading.Timer(SILENT, say, [f"mesokit: {why} ..."])
     timer.daemon = True
     if not quiet:
@@ -66,7 +66,7 @@ def show_table(rows: Sequence[tuple[str, str, str]]) -> None:
 
 
 def in_json(record: object) -> str:
-    """Plain numbers and texts as JSON, which knows neither nan nor infinity: null."""
+    """Plain numbers and texts as JSON; nan and infinity, which JSON has not, become null."""
     return json.dumps(_finite(record), indent=2, ensure_ascii=False)
 
 
@@ -81,7 +81,7 @@ def _finite(value: Any) -> Any:
 
 
 def reason(error: OSError) -> str:
-    """What the system refused, in a few words."""
+    """The reason of an error of the system, in a few words."""
     words = {errno.ENOSPC: "no space left on the disk"}
     if hasattr(errno, "EDQUOT"):
         words[errno.EDQUOT] = "disk quota exceeded"

@@ -1,14 +1,14 @@
-"""Files of named arrays (.npz), written and read piece by piece: none has to fit into memory.
+"""Files of named arrays (.npz), as of `numpy.savez`, written and read without a copy in memory.
 
-They are as `numpy.savez` makes them. An array that comes in pieces has a shape, a dtype and
-`blocks()`, which yields its rows in order.
+An array that comes in pieces has a shape, a dtype and `blocks()`, which yields its rows in order.
 """
 
 import math
 import zipfile
+from collections import deque
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.lib import format as npy
@@ -17,18 +17,10 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 
-LARGE = 2**20  # bytes of an array, from which on it stays in the file
+LARGE = 2**20  # bytes of an array that stays in the file
 READ = 2**20  # bytes at a time
 SUFFIX = ".npy"
 HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
-
-
-class Member(NamedTuple):
-    """An array of the file: its name, what numpy puts in front of it, its rows block by block."""
-
-    name: str
-    header: dict[str, Any]
-    blocks: Iterator[NDArray[Any]]
 
 
 def save(
@@ -36,21 +28,26 @@ def save(
 ) -> None:
     """Write a file of arrays whole, or leave the old one. Raises RunError if it cannot be written.
 
-    Of several ranks all call this, for arrays whose pieces they gather, and one of them is `here`;
-    where it cannot write, the others still get rid of what they send. `folder` says to make the
-    folder of the file where there is none.
+    Of several ranks that all call this and gather pieces, the one with `here` writes. If it fails,
+    the others still send their pieces. With `folder` a missing folder of the file is made.
     """
-    members = [_member(name, entry) for name, entry in arrays.items()]
+    members = [(name, *_header_and_blocks(entry)) for name, entry in arrays.items()]
     try:
         if here:
             if folder:
                 _make(Path(path).parent)
-            with replacing(path) as temporary, temporary.open("wb") as file:
-                _write(file, members)
+            with (
+                replacing(path) as temporary,
+                zipfile.ZipFile(temporary, "w", zipfile.ZIP_STORED, allowZip64=True) as archive,
+            ):
+                for name, header, blocks in members:
+                    with archive.open(name + SUFFIX, mode="w", force_zip64=True) as member:
+                        npy.write_array_header_1_0(member, header)
+                        for rows in blocks:
+                            member.write(np.ascontiguousarray(rows).reshape(-1).view(np.uint8).data)
     finally:
-        for member in members:
-            for _ in member.blocks:
-                pass
+        for _, _, blocks in members:
+            deque(blocks, maxlen=0)  # what is left of them
 
 
 def _make(folder: Path) -> None:
@@ -60,28 +57,20 @@ def _make(folder: Path) -> None:
         raise RunError(f"cannot make {folder}: {error.strerror}") from None
 
 
-def _member(name: str, entry: Any) -> Member:
+def _header_and_blocks(entry: Any) -> tuple[dict[str, Any], Iterator[NDArray[Any]]]:
+    """The header of NumPy for an array, and its rows block by block."""
     spread = hasattr(entry, "blocks")
     array = entry if spread else np.asanyarray(entry)
     descr = npy.dtype_to_descr(array.dtype)
     header = {"shape": array.shape, "fortran_order": False, "descr": descr}
-    return Member(name, header, iter(entry.blocks() if spread else [array]))
-
-
-def _write(file: IO[bytes], members: list[Member]) -> None:
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
-        for name, header, blocks in members:
-            with archive.open(name + SUFFIX, mode="w", force_zip64=True) as member:
-                npy.write_array_header_1_0(member, header)
-                for rows in blocks:
-                    member.write(np.ascontiguousarray(rows).reshape(-1).view(np.uint8).data)
+    return header, iter(entry.blocks() if spread else [array])
 
 
 def load(path: str | Path, large: float = math.inf) -> dict[str, NDArray[Any]]:
-    """The arrays of a file; those of so many bytes stay there, as maps that read what is asked for.
+    """The arrays of a file; those of at least `large` bytes stay there as maps.
 
-    Every byte is checked first. Raises what zipfile, zlib and numpy do for a damaged file, and
-    ValueError for members that are compressed: the file has as many bytes as its arrays.
+    Every byte is checked first. Raises the errors of zipfile, zlib and numpy for a damaged file,
+    and ValueError for compressed members, which cannot be mapped.
     """
     with zipfile.ZipFile(path) as archive:
         for member in archive.infolist():
@@ -97,7 +86,7 @@ def load(path: str | Path, large: float = math.inf) -> dict[str, NDArray[Any]]:
 
 
 def one(path: str | Path, name: str) -> NDArray[Any]:
-    """One array of a file, checked. Raises what zipfile, zlib and numpy do for a damaged file."""
+    """One array of a file, checked. Raises the errors of `load`."""
     with zipfile.ZipFile(path) as archive, archive.open(name + SUFFIX) as stream:
         _require_plain(archive.getinfo(name + SUFFIX))
         return np.asarray(npy.read_array(stream, allow_pickle=False))

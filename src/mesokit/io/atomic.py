@@ -1,4 +1,4 @@
-"""Files that are either the old ones or the new ones, whatever happens in between."""
+"""Files that are replaced as a whole, also if the process or the machine fails."""
 
 import errno
 import os
@@ -32,22 +32,20 @@ def replacing(path: str | Path) -> Iterator[Path]:
     path = Path(path)
     temporary = path.with_name(f".{path.name}.tmp")
     try:
-        _begun(temporary)
+        # An empty file of our own: a link in its place is removed, and not followed.
+        temporary.unlink(missing_ok=True)
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield temporary
-        _to_disk(temporary)
+        with temporary.open("rb+") as file:  # Windows needs the right to write
+            os.fsync(file.fileno())  # the contents survive a loss of power
         _replace(temporary, path)
         _folder_to_disk(path.parent)
     except OSError as error:
-        raise RunError(f"cannot write {path}: {_reason(error)}") from error
+        why = error.strerror or str(error).splitlines()[0]
+        raise RunError(f"cannot write {path}: {why[0].lower()}{why[1:]}") from error
     finally:
         with suppress(OSError):  # where the folder itself is not there, the error above says so
             temporary.unlink(missing_ok=True)
-
-
-def _begun(temporary: Path) -> None:
-    """An empty file of our own: a link that lies in its place is removed, and not followed."""
-    temporary.unlink(missing_ok=True)
-    os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
 
 
 def write_text(path: str | Path, text: str) -> Path:
@@ -73,15 +71,9 @@ def _replace(temporary: Path, path: Path) -> None:
     os.replace(temporary, path)
 
 
-def _to_disk(path: Path) -> None:
-    """Make what was written survive a loss of power."""
-    with path.open("rb+") as file:  # Windows asks for the right to write
-        os.fsync(file.fileno())
-
-
 def _folder_to_disk(path: Path) -> None:
-    """The same for the names in a folder, where the system can: Windows cannot, nor can some disks
-    in a network, and there it does so itself."""
+    """Let the names in a folder survive a loss of power. Windows and some network disks do so
+    themselves, and refuse this call."""
     with suppress(PermissionError):
         handle = os.open(path, os.O_RDONLY)
         try:
@@ -91,8 +83,3 @@ def _folder_to_disk(path: Path) -> None:
                 raise
         finally:
             os.close(handle)
-
-
-def _reason(error: OSError) -> str:
-    text = error.strerror or str(error).splitlines()[0]
-    return text[0].lower() + text[1:]

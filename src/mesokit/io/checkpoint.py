@@ -1,4 +1,4 @@
-"""Checkpoints: one file that is always whole, and refuses to continue another case."""
+"""Checkpoints: a file that is always whole, and is refused by another case."""
 
 import hashlib
 import json
@@ -30,7 +30,7 @@ def digest(text: str) -> str:
 
 
 def digest_of_motion(text: str) -> str:
-    """The same of all but how long the case runs: a state does not depend on what comes after.
+    """The same without the length of the run, on which a state does not depend.
 
     >>> digest_of_motion("[run]\\nsteps = 5\\n") == digest_of_motion("[run]\\nsteps = 10\\n")
     True
@@ -51,17 +51,11 @@ def write(
     case: str = "",
     here: bool = True,
 ) -> None:
-    """Replace the checkpoint at `path` by a new one, or leave it as it is.
+    """Replace the checkpoint at `path` by a new one, or leave the old one whole.
 
-    Parameters
-    ----------
-    path: the file.
-    arrays: what the run needs to go on, by name; some may come in pieces (see `arrays_file`).
-    meta: plain numbers and texts that go with them: `step`, and others.
-    case: `digest` of the resolved case.
-    here: whether this rank, of several that all call this, is the one that writes.
-
-    Raises RunError if it cannot be written, with the old checkpoint untouched.
+    `arrays`, by name, are the state; some may come in pieces (see `arrays_file`). `meta` has plain
+    numbers and texts, such as `step`; `case` is the digest of the resolved case. Of several ranks
+    that all call this, the one with `here` writes. Raises RunError if it cannot.
 
     >>> import tempfile
     >>> path = Path(tempfile.mkdtemp()) / "checkpoint.npz"
@@ -72,10 +66,8 @@ def write(
     """
     if _META in arrays:
         raise ValueError(f"no array may be called {_META!r}")
-    header = json.dumps(
-        {"format": FORMAT, "case": case, "arrays": sorted(arrays), "meta": dict(meta)}
-    )
-    arrays_file.save(path, {_META: np.array(header), **arrays}, here)
+    header = {"format": FORMAT, "case": case, "arrays": sorted(arrays), "meta": dict(meta)}
+    arrays_file.save(path, {_META: np.array(json.dumps(header)), **arrays}, here)
 
 
 def read(
@@ -83,21 +75,19 @@ def read(
 ) -> tuple[Arrays, dict[str, Any]]:
     """Arrays and meta of the checkpoint at `path`; every byte is checked.
 
-    With `case`, the digest of the case to go on with, and the key by which another case may start
-    from this state, if there is one. Arrays of so many bytes (`large`) stay in the file, which is
-    read where they are asked. Raises CheckpointError for a file that is missing, truncated,
-    corrupted, of another format or of another case.
+    `case` is the digest of the case that goes on; `start_key` is the key by which another case may
+    start from this state. Arrays of at least `large` bytes stay in the file as maps. Raises
+    CheckpointError for a file that is missing, truncated, damaged, of another format or case.
     """
     path = Path(path)
     arrays, header = _load(path, large=large)
     if sorted(arrays) != header["arrays"]:
         raise CheckpointError(f"{path}: damaged: its arrays are not those that it names")
     if case is not None and header["case"] != case:
-        cure = f"; to start another case from this state, give it {start_key} = "
-        cure = cure + repr(str(path.parent)) if start_key else ""
-        raise CheckpointError(
-            f"{path}: belongs to another case, or the case was changed since{cure}"
-        )
+        key = f"{start_key} = {str(path.parent)!r}"
+        cure = f"; to start another case from this state, give it {key}" * bool(start_key)
+        text = f"{path}: belongs to another case, or the case was changed since{cure}"
+        raise CheckpointError(text)
     return arrays, header["meta"]
 
 
@@ -116,10 +106,7 @@ def _load(
 ) -> tuple[Arrays, dict[str, Any]]:
     """Arrays (all, or the only one) and header. Raises CheckpointError for another format."""
     try:
-        if only is None:
-            arrays = arrays_file.load(path, large)
-        else:
-            arrays = {only: arrays_file.one(path, only)}
+        arrays = {only: arrays_file.one(path, only)} if only else arrays_file.load(path, large)
         header = json.loads(str(arrays.pop(_META)))
         version = header["format"]
         header = {name: header[name] for name in ("case", "arrays", "meta")}
@@ -128,7 +115,7 @@ def _load(
     except OSError as error:
         reason = error.strerror or "it is damaged"
         raise CheckpointError(f"{path}: cannot be read: {reason.lower()}") from None
-    except Exception:  # zip, zlib, json and numpy have many words for a damaged file
+    except Exception:  # zip, zlib, json and numpy have many errors for a damaged file
         raise CheckpointError(f"{path}: damaged: it is not a whole checkpoint") from None
     if version != FORMAT:
         raise CheckpointError(
@@ -139,6 +126,3 @@ def _load(
     if type(step) is not int or step < 0:
         raise CheckpointError(f"{path}: damaged: it does not say its step")
     return arrays, header
-
-
-__all__ = ["FORMAT", "digest", "digest_of_motion", "read", "read_meta", "write"]

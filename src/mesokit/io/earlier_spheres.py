@@ -1,10 +1,10 @@
-"""Spheres as an earlier run has left them."""
+"""Spheres of the last checkpoint of an earlier run."""
 
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
@@ -14,12 +14,10 @@ from mesokit.seam.method import method_of
 
 
 def spheres_of(path: str) -> Snapshot:
-    """The spheres at the last checkpoint of the run in a folder, whichever method it is of.
+    """The spheres at the last checkpoint of the run in a folder, of any method.
 
     Raises RunError for a folder without one, CaseError for a run of other particles.
     """
-    from mesokit.case.case import Case
-
     directory = RunDirectory.existing(path)
     earlier = Case.from_toml(directory.case_file)
     method, d = method_of(earlier), earlier.box.dimension
@@ -34,8 +32,8 @@ def spheres_of(path: str) -> Snapshot:
     lengths = np.ones(3)
     lengths[:d] = earlier.box.size
     return Snapshot(
-        positions=_deep(engine.positions()),
-        velocities=_deep(engine.velocities()),
+        positions=np.pad(engine.positions(), ((0, 0), (0, 3 - d))),
+        velocities=np.pad(engine.velocities(), ((0, 0), (0, 3 - d))),
         images=None,
         masses=np.asarray(engine.masses(), float),
         bonds=np.zeros((0, 2), np.int64),
@@ -46,8 +44,3 @@ def spheres_of(path: str) -> Snapshot:
         diameters=np.asarray(engine.diameters(), float),
         spins=np.pad(spins[:, None], ((0, 0), (2, 0))) if d == 2 else spins,
     )
-
-
-def _deep(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """With a third column."""
-    return np.pad(values, ((0, 0), (0, 3 - values.shape[1])))

@@ -1,26 +1,22 @@
 """The trajectory of a run as a file for other programs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.case.trajectory import masses_and_kinds, names_and_diameters, written
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import replacing
 from mesokit.io.moments import Moment, Particles
+from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.run_directory import RunDirectory
-    from mesokit.io.trajectory_reader import TrajectoryReader
 
 Array = NDArray[Any]
 
@@ -30,16 +26,16 @@ Writer = Callable[[Path, Particles, Iterator[Moment]], None]
 
 
 def export(directory: RunDirectory, case: Case, trajectory: Reader, path: str | Path) -> Path:
-    """Write all frames of a run to a file whose ending says the format; the old one is replaced.
+    """Write all frames of a run to a file in the format of its ending; an old file is replaced.
 
     Of a run that has not ended, frames are those up to its last checkpoint. Raises CaseError for
-    an ending that is not known, RunError where there are no frames with positions.
+    another ending, RunError without frames with positions.
     """
     path = Path(path)
-    write = _writer(path)
+    write = _writer_for(path)
     particles, moments = contents(directory, case, trajectory)
     with replacing(path) as temporary:
-        temporary.touch()  # with the rights of all other files; gsd would give it fewer
+        temporary.touch()  # with the usual permissions; gsd would give fewer
         write(temporary, particles, moments)
     return path
 
@@ -59,7 +55,7 @@ def contents(
     return particles, (_moment(case, frame) for frame in frames)
 
 
-def _writer(path: Path) -> Writer:
+def _writer_for(path: Path) -> Writer:
     from mesokit.io import gsd_file, h5md_file, mdanalysis, text_frames
 
     known: dict[str, Writer] = {
@@ -83,10 +79,10 @@ def _writer(path: Path) -> Writer:
 
 
 def _write_data(path: Path, particles: Particles, moments: Iterator[Moment]) -> None:
-    """A data file of LAMMPS: each sphere has a mass of its own there, of others each kind."""
-    from mesokit.io import lammps_spheres, mdanalysis
+    """A data file of LAMMPS: a mass for each sphere, or for each kind of other particles."""
+    from mesokit.io import mdanalysis, text_frames
 
-    write = lammps_spheres.write if particles.spheres else mdanalysis.write_last
+    write = text_frames.data_of_spheres if particles.spheres else mdanalysis.write_last
     write(path, particles, moments)
 
 
@@ -118,14 +114,12 @@ def _contents(
 def _particles(
     case: Case, number: Array, kind: Array, mass: Array, diameter: Array | None
 ) -> Particles:
-    """What does not change; `diameter` (n,) of spheres, None of particles that have no size."""
+    """Constant properties; `diameter` (n,) of spheres, None for particles that have no size."""
     bonds = method_of(case).bonds(case) - (number[0] if len(number) else 0)
     bonds = bonds[((bonds >= 0) & (bonds < len(number))).all(axis=1)]
     size = np.ones(3)
     size[: case.box.dimension] = case.box.size
-    shut = method_of(case).enclosure.closed_axes(case)
-    if case.box.dimension == 2:
-        shut = shut | {2}  # nothing repeats where there is no z
+    closed = method_of(case).enclosure.closed_axes(case) | {*range(case.box.dimension, 3)}
     names, drawn = names_and_diameters(case.groups)
     return Particles(
         number=number,
@@ -137,7 +131,7 @@ def _particles(
         bonds=bonds,
         dimension=case.box.dimension,
         size=size,
-        closed=(0 in shut, 1 in shut, 2 in shut),
+        closed=(0 in closed, 1 in closed, 2 in closed),
         spheres=diameter is not None,
     )
 
@@ -157,15 +151,13 @@ def _molecules(n: int, bonds: Array) -> NDArray[np.int64]:
 
 
 def _moment(case: Case, frame: dict[str, Array]) -> Moment:
-    """A frame in the leaning box of this moment, which only under shear is not upright.
+    """A frame in the box of this moment, which is tilted under shear.
 
-    Under shear mesokit takes x from 0 to L_x at any y: so particles are moved by whole L_x, and
-    images are counted for the edge as it leans, which is by the least of all that span the same.
+    Under shear mesokit takes x from 0 to L_x at any y. Here particles are moved by multiples of
+    L_x into the tilted box, and images are counted along its edges. The tilt is the smallest one.
     """
     time, width = float(frame["time"]), float(case.box.size[0])
-    position, velocity, image = (
-        _deep(frame.get(name)) for name in ("position", "velocity", "image")
-    )
+    position, velocity, image = (_with_z(frame.get(k)) for k in ("position", "velocity", "image"))
     assert position is not None
     tilt = 0.0
     if case.box.sheared:
@@ -177,17 +169,12 @@ def _moment(case: Case, frame: dict[str, Array]) -> Moment:
         if image is not None:
             image = image.copy()
             image[:, 0] += over.astype(int) + image[:, 1] * (tilt < 0)
-    spin = _spin(frame.get("spin"))
+    spin = frame.get("spin")
+    if spin is not None and spin.ndim == 1:  # disks spin about z
+        spin = np.pad(spin[:, None], ((0, 0), (2, 0)))
     return Moment(int(frame["step"]), time, float(tilt), position, velocity, image, spin)
 
 
-def _spin(values: Array | None) -> Array | None:
-    """Angular velocities (n, 3): disks spin about z."""
-    if values is None or values.ndim == 2:
-        return values
-    return np.pad(values[:, None], ((0, 0), (2, 0)))
-
-
-def _deep(values: Array | None) -> Array | None:
-    """With a third column."""
+def _with_z(values: Array | None) -> Array | None:
+    """Vectors (n, d) with three columns (n, 3); None stays None."""
     return None if values is None else np.pad(values, ((0, 0), (0, 3 - values.shape[1])))

@@ -1,24 +1,20 @@
-"""Whether the frames that a run should have by now are all there."""
-
-from __future__ import annotations
+"""Check that all frames of a run up to a step are there."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.trajectory import written
 from mesokit.errors import RunError
 from mesokit.io import h5md
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
 
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-
-NONE_YET = -1  # the step of a run that has not looked at its first state
+NONE_YET = -1  # the step of a run without samples of its first state
 
 
 def seen_until(meta: Mapping[str, Any]) -> int:
-    """The step up to which the run of a checkpoint has looked, from the meta of that checkpoint."""
+    """The step up to which a run has taken samples, from the meta of its checkpoint."""
     return int(meta["step"]) if meta.get("looked") else NONE_YET
 
 
@@ -37,15 +33,10 @@ def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
         try:
             there = h5md.frame_steps(place)
         except RunError:
-            raise RunError(
-                f"{place}: damaged, and only it held the frames of the trajectory; put a copy "
-                f"in its place, or run anew: {directory.again}"
-            ) from None
+            why = "damaged, and only it held the frames of the trajectory; put a copy in its place"
+            raise RunError(f"{place}: {why}, or run anew: {directory.again}") from None
     last = min(step, case.run.warmup + case.run.steps)
     wanted = range(case.run.warmup, last + 1, every)
-    lost = sorted(set(wanted) - set(there.tolist()))
-    if lost:
-        raise RunError(
-            f"{place}: {len(lost)} of {len(wanted)} frames are missing, the first that of step "
-            f"{lost[0]}; put the files back, or run anew: {directory.again}"
-        )
+    if lost := sorted(set(wanted) - set(there.tolist())):
+        why = f"{len(lost)} of {len(wanted)} frames are missing, the first that of step {lost[0]}"
+        raise RunError(f"{place}: {why}; put the files back, or run anew: {directory.again}")

@@ -1,24 +1,20 @@
-"""GSD files, those of HOOMD-blue, OVITO and others: the schema `hoomd` of the package gsd.
+"""GSD files of HOOMD-blue, OVITO and others: the schema `hoomd` of the package gsd.
 
-Their box has its middle at the origin. A field that a file leaves out has a default; for
-velocities, which are 0 then, that is as good as none.
+Their box has its middle at the origin. Missing fields have defaults; velocities that are missing
+count as unknown here, although their default is 0.
 """
-
-from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
+from mesokit.io.moments import Moment, Particles
 from mesokit.io.optional import package
-
-if TYPE_CHECKING:
-    from mesokit.io.moments import Moment, Particles
 
 SPIN = "log/particles/angular_velocity"
 
@@ -104,10 +100,17 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     frame.configuration.dimensions = particles.dimension
     frame.particles.N = len(kinds)
     frame.particles.types = list(particles.names)
-    frame.particles.type_shapes = _shapes(particles)
+    # a sphere for each kind, of the median diameter if those of single particles differ
+    of_kinds = [particles.diameter[kinds == k] for k in range(len(particles.names))]
+    frame.particles.type_shapes = [
+        {"type": "Sphere", "diameter": float(np.median(own))} if len(own) else {}
+        for own in of_kinds
+    ]
     frame.particles.typeid, frame.particles.mass = kinds, particles.mass
     frame.particles.diameter = particles.diameter
-    inertia = moments_of_inertia(particles)
+    # of uniform spheres, in 2D of disks about z
+    share = np.array([0, 0, 1 / 8] if particles.dimension == 2 else [1 / 10] * 3)
+    inertia = (particles.mass * particles.diameter**2)[:, None] * share
     if particles.spheres:
         frame.particles.moment_inertia = inertia
     # -1: in no body; 0 and above: rigid ones, which molecules are not
@@ -121,37 +124,18 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             middle[particles.dimension :] = 0.0
             frame.configuration.step = now.step
             frame.configuration.box = [*size, now.tilt / size[1], 0.0, 0.0]
-            faces = np.where(now.tilt == 0.0, 0.5 * size, np.inf)  # a leaning one has no one x
+            faces = np.where(now.tilt == 0.0, 0.5 * size, np.inf)  # x of a tilted face varies
             frame.particles.position = _rounded(now.position - middle, faces)
             frame.particles.velocity, frame.particles.image = now.velocity, now.image
             frame.log = {"time": np.array([now.time])}
             if now.spin is not None:
                 frame.log[SPIN.removeprefix("log/")] = now.spin
-                frame.particles.angmom = _angular_momentum(now.spin * inertia)
+                # quaternions 2 q (0, L) of particles that are not rotated, q = 1
+                frame.particles.angmom = np.pad(2 * (now.spin * inertia), ((0, 0), (1, 0)))
             file.append(frame)
 
 
-def _shapes(particles: Particles) -> list[dict[str, Any]]:
-    """A sphere for each kind: of the median diameter, where those of single particles differ."""
-    found = []
-    for kind in range(len(particles.names)):
-        own = particles.diameter[particles.kind == kind]
-        found.append({"type": "Sphere", "diameter": float(np.median(own))} if len(own) else {})
-    return found
-
-
-def moments_of_inertia(particles: Particles) -> Any:
-    """(n, 3), of uniform spheres, in 2D of disks about z."""
-    share = np.array([0, 0, 1 / 8] if particles.dimension == 2 else [1 / 10] * 3)
-    return (particles.mass * particles.diameter**2)[:, None] * share
-
-
-def _angular_momentum(momenta: Any) -> Any:
-    """As quaternions (n, 4) of particles that are not turned: 0 and twice the vector."""
-    return np.pad(2 * momenta, ((0, 0), (1, 0)))
-
-
 def _rounded(position: Any, half: Any) -> Any:
-    """In single precision, below the upper faces (3,): on them HOOMD-blue takes it for outside."""
+    """Positions in single precision, below the upper faces (3,), which HOOMD-blue excludes."""
     edge = np.nextafter(np.asarray(half, np.float32), np.float32(0))
     return np.minimum(position.astype(np.float32), edge)

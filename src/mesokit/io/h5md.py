@@ -20,28 +20,24 @@ Under Lees-Edwards shear the box is written as a triclinic one, whose second edg
 the images have slid: that of the nearest image, between -L/2 and L/2.
 """
 
-from __future__ import annotations
-
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import name_of
 from mesokit.case.trajectory import kinds_of, names_and_diameters
 from mesokit.io.atomic import replacing
 from mesokit.io.hdf5 import made, opened
+from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.seam.in_units import units_of
 from mesokit.seam.method import method_of
 from mesokit.seam.result import Comparison, Result
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.io.trajectory import TrajectoryWriter
 
 UNITS = {"position": "a", "velocity": "a/tau", "spin": "1/tau", "time": "tau", "radius": "a"}
 FIELDS = ("position", "velocity", "spin", "image", "site")
@@ -58,14 +54,7 @@ def write(
     results: Iterable[Result],
     trajectory: TrajectoryWriter | None = None,
 ) -> None:
-    """Write the data file whole, or leave the old one.
-
-    Parameters
-    ----------
-    path: the file.
-    case, provenance: of the run.
-    results: of all observables.
-    trajectory: whose frames are copied one by one.
+    """Write the data file whole, or leave the old one. Frames are copied one by one.
 
     Raises RunError if it cannot be written.
     """
@@ -94,9 +83,8 @@ def frame_steps(path: str | Path) -> NDArray[np.int64]:
     """Steps of the frames in a data file. Raises RunError for a damaged file."""
     with opened(path) as file:
         group = particles_of(file)
-        if group is None:
-            return np.zeros(0, np.int64)
-        return np.asarray(group["box/edges/step"][()], np.int64)
+        steps = [] if group is None else group["box/edges/step"][()]
+        return np.asarray(steps, np.int64)
 
 
 def frames(path: str | Path) -> Iterator[dict[str, NDArray[Any]]]:
@@ -113,7 +101,7 @@ def frames(path: str | Path) -> Iterator[dict[str, NDArray[Any]]]:
 
 
 def own(path: str | Path) -> dict[str, NDArray[Any]]:
-    """Masses and diameters (n,) of spheres in a data file, nothing of others. Raises RunError."""
+    """Masses and diameters (n,) of spheres in a data file, {} for others. Raises RunError."""
     with opened(path) as file:
         group = particles_of(file)
         if group is None or "radius" not in group:
@@ -122,13 +110,13 @@ def own(path: str | Path) -> dict[str, NDArray[Any]]:
 
 
 def in_frames(data: Any, frames: Any, field: str, dimension: int) -> NDArray[Any]:
-    """A field in some frames: a site has one number, all else three columns in the file."""
+    """A field in some frames. A site has one number, all other fields three columns in the file."""
     found = np.asarray(data[frames])
     return found if field == "site" else found[..., columns(field, dimension)]
 
 
 def columns(field: str, dimension: int) -> Any:
-    """Which of the three columns of a file are the numbers of a field; disks spin about z."""
+    """The columns, of three, that a field uses; disks spin about z."""
     return 2 if field == "spin" and dimension == 2 else slice(dimension)
 
 
@@ -137,13 +125,26 @@ def particles_of(file: Any) -> Any:
     return next(iter(file["particles"].values())) if "particles" in file else None
 
 
-def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:
-    version = str(provenance.get("versions", {}).get("mesokit", "unknown"))
+def standard_header(file: Any, version: str, author: str = "unknown") -> None:
+    """The group that H5MD requires."""
     head = file.create_group("h5md")
     head.attrs["version"] = np.array([1, 1], np.int32)
-    head.create_group("author").attrs["name"] = str(provenance.get("author", "unknown"))
-    creator = head.create_group("creator")
-    creator.attrs["name"], creator.attrs["version"] = "mesokit", version
+    head.create_group("author").attrs["name"] = author
+    head.create_group("creator").attrs.update({"name": "mesokit", "version": version})
+
+
+def standard_box(group: Any, closed: Sequence[bool]) -> Any:
+    """The box of a group of particles, with its boundaries along three axes."""
+    box = group.create_group("box")
+    boundary = ["none" if shut else "periodic" for shut in closed]
+    box.attrs["dimension"] = 3
+    box.attrs["boundary"] = np.array(boundary, dtype=h5py.string_dtype("ascii"))
+    return box
+
+
+def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:
+    version = str(provenance.get("versions", {}).get("mesokit", "unknown"))
+    standard_header(file, version, str(provenance.get("author", "unknown")))
     parameters = file.create_group("parameters")
     parameters["case"] = case.to_toml()
     parameters["provenance"] = json.dumps(provenance)
@@ -153,7 +154,7 @@ def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:
 
 
 def _kept(file: Any, path: str | Path) -> bool:
-    """Take the frames over from the old data file of a run that had ended, if there is one."""
+    """Copy the frames from the old data file of a run that had ended; false without one."""
     if not Path(path).exists():
         return False
     with opened(path) as old:
@@ -176,38 +177,39 @@ def _particles(
     check: Callable[[], None],
 ) -> None:
     group = file.create_group(f"particles/{case.groups[0].name}")
-    n, frames = trajectory.number, len(steps)
+    n, frames, kept = trajectory.number, len(steps), trajectory.trajectory
+    units = {name: units_of(case).of(unit) for name, unit in UNITS.items()}
     group.attrs["dimension"] = case.box.dimension
     own = trajectory.own
     _identities(group, case, trajectory, own)
     if "diameter" in own:
         group["radius"] = 0.5 * own["diameter"]
-        group["radius"].attrs["reduced_unit"] = units_of(case).of(UNITS["radius"])
+        group["radius"].attrs["reduced_unit"] = units["radius"]
     group["species"].attrs["names"] = names_and_diameters(case.groups)[0]
     bonds = method_of(case).bonds(case)
-    if len(bonds):
-        _bonds(file, group, bonds, trajectory.first, n)
+    if len(bonds):  # rows of the trajectory whose particles are linked
+        rows = bonds - trajectory.first
+        rows = rows[((rows >= 0) & (rows < n)).all(axis=1)]
+        links = file.require_group("connectivity")
+        links = links.create_dataset("bonds", data=rows, compression=4)
+        links.attrs["particles_group"] = group.ref
     group["step"] = steps
-    group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = units_of(case).of(
-        UNITS["time"]
-    )
+    group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = units["time"]
     sets = {}
-    for name in trajectory.trajectory.fields:
-        if name != "id":
-            deep = () if name == "site" else (3,)
-            sets[name] = _element(group, name, group).create_dataset(
-                "value",
-                (frames, n, *deep),
-                DTYPES.get(name, trajectory.trajectory.precision),
-                chunks=(1, min(max(n, 1), CHUNK), *deep) if frames and n else None,
-                compression=trajectory.trajectory.compression or None if frames and n else None,
-                shuffle=bool(trajectory.trajectory.compression) if frames and n else None,
-            )
-            if name in UNITS:
-                sets[name].attrs["reduced_unit"] = units_of(case).of(UNITS[name])
+    for name in [name for name in kept.fields if name != "id"]:
+        deep = () if name == "site" else (3,)
+        packed: dict[str, Any] = {}
+        if frames and n:
+            packed = {"chunks": (1, min(n, CHUNK), *deep), "shuffle": bool(kept.compression)}
+            packed["compression"] = kept.compression or None
+        dtype = DTYPES.get(name, kept.precision)
+        element = _element(group, name, group)
+        sets[name] = element.create_dataset("value", (frames, n, *deep), dtype, **packed)
+        if name in UNITS:
+            sets[name].attrs["reduced_unit"] = units[name]
     edges = _box(group, case, frames)
-    # Frame by frame and in chunks of particles: memory does not grow with the run. H5MD has three
-    # components, so in 2D the missing one is 0.
+    # Frame by frame and in chunks of particles, so memory does not grow with the run. H5MD has
+    # three components, so in 2D the missing one is 0.
     for index, frame in enumerate(trajectory.frames()):
         check()
         group["time"][index] = frame["time"]
@@ -226,7 +228,7 @@ def _particles(
 def _identities(
     group: Any, case: Case, trajectory: TrajectoryWriter, own: Mapping[str, Any]
 ) -> None:
-    """Number, mass and kind of each particle, some after the other."""
+    """Id, mass and kind of each particle, in chunks."""
     n = trajectory.number
     masses = np.array([kind.mass for one in case.groups for kind in one.kinds], float)
     sets = {
@@ -241,29 +243,16 @@ def _identities(
         sets["mass"][rows] = own["mass"][rows] if own else masses[kinds]
 
 
-def _bonds(file: Any, group: Any, pairs: NDArray[np.int64], first: int, number: int) -> None:
-    """Rows of the trajectory whose particles are linked, as H5MD has it."""
-    pairs = pairs - first
-    there = ((pairs >= 0) & (pairs < number)).all(axis=1)
-    bonds = file.require_group("connectivity").create_dataset(
-        "bonds", data=pairs[there], compression=4
-    )
-    bonds.attrs["particles_group"] = group.ref
-
-
 def _element(parent: Any, name: str, clock: Any) -> Any:
-    """A group whose step and time are links to those of all others."""
+    """A group whose step and time are links to those of all other groups."""
     element = parent.create_group(name)
     element["step"], element["time"] = clock["step"], clock["time"]
     return element
 
 
 def _box(group: Any, case: Case, frames: int) -> Any:
-    box = group.create_group("box")
     closed = method_of(case).enclosure.closed_axes(case)
-    boundary = ["none" if axis in closed else "periodic" for axis in range(3)]
-    box.attrs["dimension"] = 3
-    box.attrs["boundary"] = np.array(boundary, dtype=h5py.string_dtype("ascii"))
+    box = standard_box(group, [axis in closed for axis in range(3)])
     shape = (frames, 3, 3) if case.box.sheared else (frames, 3)
     if case.box.sheared:
         steady, oscillation = case.box.steady_rate, case.box.oscillation
@@ -321,8 +310,7 @@ def _result(parent: Any, result: Result) -> None:
     for name, axis in result.x.items():
         _store(group["x"], name, axis)
     for name in ("value", "error", "expected", "fit"):
-        if getattr(result, name) is not None:
-            array = getattr(result, name)
+        if (array := getattr(result, name)) is not None:
             packed = {"compression": 4, "shuffle": True} if array.size > LARGE else {}
             group.create_dataset(name, data=array, **packed)
     table = group.create_group("comparisons")

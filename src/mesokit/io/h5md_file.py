@@ -1,43 +1,31 @@
-"""Trajectories as H5MD for other programs: what they ask for beside what the standard does.
+"""Trajectories as H5MD for other programs, with the extensions that MDAnalysis needs.
 
-MDAnalysis wants the group to be called `trajectory`, takes what it does not know of particles from
-`observables`, where spins are therefore linked to, and wants units that it knows: a cell is an
-angstrom here and a unit of time a picosecond, as all files are read that name no units.
+MDAnalysis needs a group of the name `trajectory`, reads other properties of particles from
+`observables`, so spins are linked there, and needs units that it has: a cell is an angstrom here
+and a unit of time a picosecond, like in all files without units.
 """
-
-from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import h5py
 import numpy as np
 
+from mesokit import __version__
+from mesokit.io.h5md import standard_box, standard_header
 from mesokit.io.hdf5 import made
-
-if TYPE_CHECKING:
-    from mesokit.io.moments import Moment, Particles
+from mesokit.io.moments import Moment, Particles
 
 UNITS = {
-    "position": "Angstrom",
-    "velocity": "Angstrom ps-1",
-    "spin": "ps-1",
-    "edges": "Angstrom",
+    "position": "Angstrom", "velocity": "Angstrom ps-1", "spin": "ps-1", "edges": "Angstrom",
     "image": None,
-}
+}  # fmt: skip
 
 
 def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
-    """All frames, with box, masses, kinds, molecules, bonds and what is known of them."""
-    from mesokit import __version__
-
+    """All frames, with box, masses, kinds, molecules, bonds and all known fields."""
     with made(path) as (file, check):
-        head = file.create_group("h5md")
-        head.attrs["version"] = np.array([1, 1], np.int32)
-        head.create_group("author").attrs["name"] = "unknown"
-        creator = head.create_group("creator")
-        creator.attrs["name"], creator.attrs["version"] = "mesokit", __version__
+        standard_header(file, __version__)
         group = file.create_group("particles/trajectory")
         group.attrs["dimension"] = particles.dimension
         group["id"], group["mass"] = particles.number, particles.mass
@@ -45,10 +33,7 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
         group["species"].attrs["names"] = particles.names
         if particles.spheres:
             group["radius"] = 0.5 * particles.diameter
-        box = group.create_group("box")
-        boundary = ["none" if shut else "periodic" for shut in particles.closed]
-        box.attrs["dimension"] = 3
-        box.attrs["boundary"] = np.array(boundary, dtype=h5py.string_dtype("ascii"))
+        box = standard_box(group, particles.closed)
         bonds = file.create_dataset("connectivity/bonds", data=particles.bonds)
         bonds.attrs["particles_group"] = group.ref
         for now in moments:
@@ -56,16 +41,14 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             edges = np.diag(particles.size)
             edges[1, 0] = now.tilt
             _append(box, "edges", edges, now)
-            _append(group, "position", now.position, now)
-            _append(group, "velocity", now.velocity, now)
-            _append(group, "spin", now.spin, now)
-            _append(group, "image", now.image, now)
+            for name in ("position", "velocity", "spin", "image"):
+                _append(group, name, getattr(now, name), now)
         if "spin" in group:
             file["observables/trajectory/spin"] = group["spin"]
 
 
 def _append(parent: Any, name: str, value: Any, now: Moment) -> None:
-    """One frame more of an element; none of what is not known."""
+    """Add one frame of an element, if it is known."""
     if value is None:
         return
     if name not in parent:

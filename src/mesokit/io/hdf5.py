@@ -1,4 +1,4 @@
-"""HDF5 files that can be read and written whatever happens to the disk."""
+"""HDF5 files whose errors of reading and writing are exceptions, also on a full disk."""
 
 import io
 from collections.abc import Callable, Iterator
@@ -14,10 +14,10 @@ MOST_IN_MEMORY = 2**28  # bytes kept in memory once the disk is full
 
 
 class _Target(io.FileIO):
-    """A file that HDF5 can always write to, read from and close: else it may end the process.
+    """A file that HDF5 can always write, read and close; otherwise it may end the process.
 
-    From the first write that the system refuses on, as on a full disk, writes are kept in memory,
-    where HDF5 reads them back; `refused` is the reason.
+    From the first write that the system refuses, as on a full disk, writes are kept in memory and
+    read from there; `refused` is the reason.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -32,7 +32,6 @@ class _Target(io.FileIO):
             raise self.refused
 
     def write(self, data: Any) -> int:
-        """Write all of it, to the file or to memory."""
         whole = memoryview(data).cast("B")
         start, left = self.tell(), whole
         try:
@@ -41,17 +40,15 @@ class _Target(io.FileIO):
         except OSError as error:
             self.refused = error
         if self.refused is not None:
-            self._keep(start, bytes(whole))
+            end = start + whole.nbytes
+            if sum(len(one) for _, one in self._kept) < MOST_IN_MEMORY:
+                self._kept.append((start, bytes(whole)))
+            self._end = max(self._end, end)
+            self.seek(end)
         return whole.nbytes
 
-    def _keep(self, start: int, data: bytes) -> None:
-        if sum(len(one) for _, one in self._kept) < MOST_IN_MEMORY:
-            self._kept.append((start, data))
-        self._end = max(self._end, start + len(data))
-        self.seek(start + len(data))
-
     def readinto(self, buffer: Any) -> int:
-        """Fill a buffer from the file, and from what is in memory instead."""
+        """Fill a buffer from the file and from memory."""
         if self.refused is None:
             return super().readinto(buffer) or 0
         out, start = memoryview(buffer).cast("B"), self.tell()
@@ -65,13 +62,11 @@ class _Target(io.FileIO):
         return out.nbytes
 
     def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        """Go to a place, which may lie in memory."""
         if whence == io.SEEK_END:
             return super().seek(max(super().seek(0, io.SEEK_END), self._end) + offset)
         return super().seek(offset, whence)
 
     def truncate(self, size: int | None = None) -> int:
-        """Make it longer or shorter, if that can be done."""
         try:
             return super().truncate(size)
         except OSError as error:
@@ -79,7 +74,7 @@ class _Target(io.FileIO):
             return size or 0
 
     def flush(self) -> None:
-        """Nothing waits to be written."""
+        """Do nothing: there is no buffer."""
 
 
 @contextmanager

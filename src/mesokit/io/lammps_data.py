@@ -84,10 +84,9 @@ def _snapshot(header: dict[str, str], sections: Sections, style: str | None) -> 
     names = STYLES.get(style or "", ())
     before = len(names)
     if not names or width not in (before + 3, before + 6):
-        raise CaseError(
-            f"its {width} columns of Atoms are not those of style {show(style or '?')}; "
-            f"expected {one_of(list(STYLES))}, after '#' beside the heading Atoms"
-        )
+        form = f"{one_of(list(STYLES))}, after '#' beside the heading Atoms"
+        which = f"its {width} columns of Atoms are not those of style {show(style or '?')}"
+        raise CaseError(f"{which}; expected {form}")
     n, numbers = len(atoms), atoms[:, 0].astype(int)
     if len(np.unique(numbers)) < n or str(n) != header.get("atoms", str(n)).strip():
         raise CaseError(f"it has {n} lines of Atoms; expected one for each of its atoms")
@@ -98,18 +97,21 @@ def _snapshot(header: dict[str, str], sections: Sections, style: str | None) -> 
     corners = np.array([header[name].split() for name in CORNERS], float)
     velocities, spins = _velocities(sections, numbers)
     column = {name: atoms[:, i] for i, name in enumerate(names)}
-    diameters = column.get("diameter")
+    diameters, masses = column.get("diameter"), None
     links = np.zeros((0, 2), int)
     if sections.get("Bonds"):
         links = rows_of(numbers, _numbers(sections, "Bonds")[:, 2:4].astype(int))
-    with_images = width == before + 6
+    if diameters is not None:
+        masses = column["density"] * np.pi / 6 * diameters**3
+    elif sections.get("Masses"):
+        table = _numbers(sections, "Masses")
+        of_kind = dict(zip(table[:, 0].tolist(), table[:, 1].tolist(), strict=True))
+        masses = np.array([of_kind[kind] for kind in column["type"].tolist()])
     return Snapshot(
         positions=atoms[:, before : before + 3],
         velocities=velocities,
-        images=atoms[:, before + 3 :].astype(int) if with_images else None,
-        masses=_masses(sections, column["type"])
-        if diameters is None
-        else column["density"] * np.pi / 6 * diameters**3,
+        images=atoms[:, before + 3 :].astype(int) if width == before + 6 else None,
+        masses=masses,
         bonds=links,
         numbers=numbers,
         low=corners[:, 0],
@@ -121,7 +123,7 @@ def _snapshot(header: dict[str, str], sections: Sections, style: str | None) -> 
 
 
 def _velocities(sections: Sections, numbers: NDArray[np.int64]) -> tuple[Any, Any]:
-    """Velocities (n, 3), and angular velocities (n, 3) of spheres; None of what is not there."""
+    """Velocities (n, 3), and angular velocities (n, 3) of spheres; None for missing ones."""
     if not sections.get("Velocities"):
         return None, None
     rows = _numbers(sections, "Velocities")
@@ -130,19 +132,10 @@ def _velocities(sections: Sections, numbers: NDArray[np.int64]) -> tuple[Any, An
     return found[:, :3], found[:, 3:6] if found.shape[1] >= 6 else None
 
 
-def _masses(sections: Sections, kinds: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    if not sections.get("Masses"):
-        return None
-    table = _numbers(sections, "Masses")
-    mass = dict(zip(table[:, 0].tolist(), table[:, 1].tolist(), strict=True))
-    return np.array([mass[kind] for kind in kinds.tolist()])
-
-
 def _numbers(sections: Sections, name: str) -> NDArray[np.float64]:
     """The lines of a section as a table."""
     try:
         return np.array(sections[name], float)
     except ValueError:
-        raise CaseError(
-            f"its section {name} is damaged; expected as many numbers in every line"
-        ) from None
+        why = f"its section {name} is damaged; expected as many numbers in every line"
+        raise CaseError(why) from None

@@ -1,7 +1,7 @@
-"""The log of a run: a line of numbers every so many steps, which anybody may read meanwhile.
+"""The log of a run: a line of numbers every so many steps, which can be read meanwhile.
 
-Each line is in the file as soon as it is known. A run that goes on from a checkpoint drops the
-lines that came after it, so that the file is that of a run which never stopped.
+Each line is written at once. A run that goes on from a checkpoint drops later lines, so the file is
+that of a run without a stop.
 """
 
 import csv
@@ -24,7 +24,7 @@ ASIDE = "log-damaged"  # start of the names of files that were set aside
 
 
 class DamagedLog(RunError):
-    """A log whose lines are not the numbers that they were."""
+    """A log whose lines are not numbers, or not as many as its columns."""
 
 
 class LogFile:
@@ -55,7 +55,7 @@ class LogFile:
             os.fsync(file.fileno())
 
     def cut(self, step: int) -> None:
-        """Drop all lines after this step, at 0 also its own, which comes anew. Raises RunError."""
+        """Drop all lines after a step; at step 0 all, as its line comes again. Raises RunError."""
         if not self.path.exists() or not (lines := _whole_lines(self.path)):
             return
         table = read(self.path)
@@ -65,7 +65,7 @@ class LogFile:
         write_text(self.path, "".join([lines[0], *kept]))
 
     def set_aside(self) -> Path:
-        """Give the file a name under which nothing writes it again, the path, and begin anew."""
+        """Rename the file to a free name, which is returned, and begin a new one."""
         names = (f"{ASIDE}{number}.csv" for number in itertools.chain([""], itertools.count(2)))
         free = next(path for name in names if not (path := self.path.with_name(name)).exists())
         kept = self.path.rename(free)
@@ -93,21 +93,19 @@ def read(path: Path) -> NDArray[Any]:
             raise ValueError
         return np.array(numbers, types)
     except (ValueError, OverflowError):
-        raise DamagedLog(
-            f"{path}: damaged: expected the same number of numbers in each line"
-        ) from None
+        why = "expected the same number of numbers in each line"
+        raise DamagedLog(f"{path}: damaged: {why}") from None
 
 
 def _whole_lines(path: Path) -> list[str]:
-    """The last line may be half written. Raises RunError."""
+    """Lines of a file, without a last one that is not complete. Raises RunError."""
     try:
         lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
     except OSError as error:
         raise RunError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     except UnicodeDecodeError as error:
-        raise DamagedLog(
-            f"{path}: damaged: byte {error.start} is not UTF-8; expected numbers"
-        ) from None
+        why = f"byte {error.start} is not UTF-8; expected numbers"
+        raise DamagedLog(f"{path}: damaged: {why}") from None
     return [line for line in lines if line.endswith("\n")]
 
 

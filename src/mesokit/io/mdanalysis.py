@@ -1,20 +1,18 @@
-"""What MDAnalysis knows of a trajectory, and the formats that it writes."""
+"""Trajectories as universes of MDAnalysis, and the formats that it writes."""
 
-from __future__ import annotations
-
+import itertools
 import warnings
+from collections import deque
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.io.moments import Moment, Particles
 from mesokit.io.optional import package
-
-if TYPE_CHECKING:
-    from mesokit.io.moments import Moment, Particles
 
 FRAMES = {".dcd": "DCD", ".xtc": "XTC", ".trr": "TRR"}  # endings of formats with many frames
 
@@ -27,13 +25,14 @@ def require() -> ModuleType:
 def universe(particles: Particles, moments: Iterable[Moment]) -> Any:
     """All frames in memory, as a `Universe`; a cell is an angstrom there, a unit of time a ps."""
     frames = list(moments)
+    velocities = [now.velocity for now in frames if now.velocity is not None]
     made = _empty(particles)
     with _quiet():
         made.load_new(
             np.stack([now.position for now in frames]).astype(np.float32),
             order="fac",
             dimensions=np.stack([_dimensions(particles, now) for now in frames]),
-            velocities=_velocities(frames),
+            velocities=np.stack(velocities).astype(np.float32) if velocities else None,
             dt=frames[1].time - frames[0].time if len(frames) > 1 else 1.0,
             time_offset=frames[0].time,
         )
@@ -41,16 +40,18 @@ def universe(particles: Particles, moments: Iterable[Moment]) -> Any:
 
 
 def write_frames(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
-    """Positions and box of all frames (with velocities in TRR); what particles are has no place."""
+    """Positions and box of all frames (with velocities in TRR), without kinds, masses and bonds."""
     frames = iter(moments)
-    first = next(frames)
-    second = next(frames, None)
-    every, interval = _spacing(first, second)
-    known = [first, *([second] if second else [])]
+    known = list(itertools.islice(frames, 2))
+    first, last = known[0], known[-1]
+    # steps and time from a frame to the next; of one alone, a step and its time
+    every, interval = 1, first.time / first.step if first.step else 1.0
+    if len(known) > 1:
+        every, interval = last.step - first.step, last.time - first.time
     form = FRAMES["." + path.name.removeprefix(".").removesuffix(".tmp").rpartition(".")[2]]
     made = _empty(particles, velocities=first.velocity is not None)
-    counted = {"dt": interval, "nsavc": every, "istart": first.step}  # a DCD has no times
-    options = counted if form == "DCD" else {}
+    options = {"dt": interval, "nsavc": every, "istart": first.step}  # a DCD has no times
+    options = options if form == "DCD" else {}
     with (
         _quiet(),
         require().coordinates.core.writer(
@@ -62,19 +63,9 @@ def write_frames(path: Path, particles: Particles, moments: Iterable[Moment]) ->
             writer.write(made.atoms)
 
 
-def _spacing(first: Moment, second: Moment | None) -> tuple[int, float]:
-    """Steps and time from a frame to the next; of one alone, a step and its time."""
-    if second is not None:
-        return second.step - first.step, second.time - first.time
-    return 1, first.time / first.step if first.step else 1.0
-
-
 def write_last(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     """The last frame as a LAMMPS data file: kinds, masses, molecules, bonds and velocities."""
-    now = None
-    for now in moments:  # noqa: B007  the last one is meant
-        pass
-    assert now is not None
+    now = deque(moments, maxlen=1).pop()
     made = _empty(particles, velocities=now.velocity is not None)
     made.add_TopologyAttr("types", (particles.kind + 1).astype(str))
     made.add_TopologyAttr("charges", np.zeros(len(made.atoms)))
@@ -104,13 +95,13 @@ def _empty(particles: Particles, velocities: bool = False) -> Any:
             trajectory=True,
             velocities=velocities,
         )
-        made.add_TopologyAttr("names", names)
-        made.add_TopologyAttr("types", names)
-        made.add_TopologyAttr("masses", particles.mass)
-        made.add_TopologyAttr("radii", 0.5 * particles.diameter)
-        made.add_TopologyAttr("resids", np.arange(1, len(first) + 1))
-        made.add_TopologyAttr("resnames", names[first])
-        made.add_TopologyAttr("segids", ["mesokit"])
+        attributes = {
+            "names": names, "types": names, "masses": particles.mass,
+            "radii": 0.5 * particles.diameter, "resids": np.arange(1, len(first) + 1),
+            "resnames": names[first], "segids": ["mesokit"],
+        }  # fmt: skip
+        for name, values in attributes.items():
+            made.add_TopologyAttr(name, values)
         pairs = [tuple(pair) for pair in particles.bonds.tolist()]
         bonds = require().core.topologyattrs.Bonds(pairs, types=["1"] * len(pairs))
         made.add_TopologyAttr(bonds)
@@ -134,14 +125,9 @@ def _dimensions(particles: Particles, now: Moment) -> Any:
     return require().lib.mdamath.triclinic_box(x, y, z)
 
 
-def _velocities(frames: list[Moment]) -> Any:
-    known = [now.velocity for now in frames if now.velocity is not None]
-    return np.stack(known).astype(np.float32) if known else None
-
-
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """MDAnalysis warns of whatever a chemist would want to know and these particles have not."""
+    """Without warnings of MDAnalysis about chemistry that these particles do not have."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield

@@ -1,24 +1,20 @@
-"""What a run has come to: its state and what its observables measured, as checkpoints hold it."""
-
-from __future__ import annotations
+"""States of engines and observables, written to checkpoints and restored from them."""
 
 import contextlib
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.errors import CheckpointError, MesokitError
 from mesokit.io import checkpoint
 from mesokit.io.arrays_file import LARGE
 from mesokit.io.run_directory import RunDirectory
 from mesokit.seam.method import method_of
 from mesokit.seam.pooled import pool
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 
 def keep(
@@ -28,41 +24,40 @@ def keep(
     replicas: Sequence[Any],
     here: bool = True,
 ) -> None:
-    """Write a checkpoint of these replicas; of several ranks all do, and one is `here`.
+    """Write a checkpoint of these replicas. All ranks call this; the one with `here` writes.
 
     Raises RunError.
     """
     arrays: dict[str, Any] = {}
     for k, one in enumerate(replicas):
-        arrays |= {f"{_prefix(k)}engine/{key}": v for key, v in one.engine.state().items()}
-        for name, accumulator in one.accumulators.items():
-            start = f"{_prefix(k)}observe/{name}/"
-            arrays |= {f"{start}{key}": v for key, v in accumulator.state().items()}
-    motion = _motion(directory, case)
-    checkpoint.write(directory.checkpoint_file, arrays, dict(meta), motion, here)
+        states = {"engine": one.engine.state()}
+        states |= {f"observe/{name}": a.state() for name, a in one.accumulators.items()}
+        for start, state in states.items():
+            arrays |= {f"{_prefix(k)}{start}/{key}": v for key, v in state.items()}
+    motion = checkpoint.digest_of_motion(case.to_toml(directory.path))
+    checkpoint.write(directory.checkpoint_file, arrays, meta, motion, here)
 
 
 def _prefix(k: int) -> str:
-    """What the names of arrays of replica k begin with: nothing of the first, as of a run alone."""
+    """Begin of the names of arrays of replica k; "" for the first, which may be the only one."""
     return f"replica-{k}/" if k else ""
 
 
 def take_up(
     directory: RunDirectory, case: Case, replicas: Sequence[Any], comm: Any = None
 ) -> dict[str, Any]:
-    """Let engines and accumulators of replicas go on from the checkpoint; what else was kept.
+    """Restore engines and accumulators of replicas from the checkpoint; returns its meta.
 
     Of several ranks, those of `comm`, the first one reads.
 
     Raises CheckpointError if it is damaged or of another case.
     """
-    path = directory.checkpoint_file
     if comm is None:
         arrays, meta = _read(directory, case)
     else:
         engines = tuple(f"{_prefix(k)}engine/" for k in range(len(replicas)))
         arrays, meta = _read_by_one(directory, case, engines, comm)
-    with fitting(path):
+    with fitting(directory.checkpoint_file):
         if type(meta.get("looked")) is not bool:
             raise ValueError("it does not say whether its step was looked at")
         for k, replica in enumerate(replicas):
@@ -79,32 +74,29 @@ def take_up(
 def _read(
     directory: RunDirectory, case: Case, large: float = math.inf
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    path, motion = directory.checkpoint_file, _motion(directory, case)
-    return checkpoint.read(path, motion, method_of(case).initial.run, large)
+    motion = checkpoint.digest_of_motion(case.to_toml(directory.path))
+    start_key = method_of(case).initial.run
+    return checkpoint.read(directory.checkpoint_file, motion, start_key, large)
 
 
 def _read_by_one(
     directory: RunDirectory, case: Case, engines: tuple[str, ...], comm: Any
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The same on all ranks: the first reads, and tells the others what is not of its engines,
-    which see to it themselves."""
+    """The same on all ranks: the first reads, and sends all arrays but those of the engines, which
+    distribute their own."""
     arrays: dict[str, Any] = {}
-    told: Any = None
+    sent: Any = None
     if comm.rank == 0:
         try:
             arrays, meta = _read(directory, case, LARGE)
             plain = {k: np.asarray(v) for k, v in arrays.items() if not k.startswith(engines)}
-            told = plain, meta, ""
+            sent = plain, meta, ""
         except CheckpointError as error:
-            told = {}, {}, str(error)
-    plain, meta, wrong = comm.bcast(told)
+            sent = {}, {}, str(error)
+    plain, meta, wrong = comm.bcast(sent)
     if wrong:
         raise CheckpointError(wrong)
     return arrays or plain, meta
-
-
-def _motion(directory: RunDirectory, case: Case) -> str:
-    return checkpoint.digest_of_motion(case.to_toml(directory.path))
 
 
 def measured(directory: RunDirectory, case: Case) -> tuple[dict[str, Any], int]:
@@ -127,7 +119,7 @@ def measured(directory: RunDirectory, case: Case) -> tuple[dict[str, Any], int]:
 
 
 def restore(accumulators: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
-    """Let accumulators go on from the arrays of a checkpoint.
+    """Restore accumulators from the arrays of a checkpoint.
 
     Raises ValueError for one of other dimensions or another kind of numbers.
     """
@@ -143,7 +135,7 @@ def restore(accumulators: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
 
 @contextlib.contextmanager
 def fitting(path: Path) -> Iterator[None]:
-    """Arrays that do not fit the case are a CheckpointError, whatever is wrong with them."""
+    """Raise CheckpointError for any error of arrays that do not fit the case."""
     try:
         yield
     except MesokitError:

@@ -1,4 +1,4 @@
-"""What a file for other programs holds: particles, and one frame of them."""
+"""Particles and frames of them, as files for other programs contain."""
 
 from typing import Any, NamedTuple
 
@@ -9,7 +9,7 @@ Array = NDArray[Any]
 
 
 class Particles(NamedTuple):
-    """What does not change from frame to frame: (n,) numbers from 0, kinds from 0, and masses.
+    """Constant properties of particles: (n,) numbers from 0, kinds from 0, and masses.
 
     `names` of the kinds; `diameter` (n,); `molecule` (n,) from 0, -1 for single particles; `bonds`
     (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` axes. `spheres`: whether

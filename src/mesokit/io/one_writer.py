@@ -1,22 +1,17 @@
 """One process at a time writes into the folder of a run."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from mesokit.errors import RunError
-
-if TYPE_CHECKING:
-    from mesokit.io.run_directory import RunDirectory
+from mesokit.io.run_directory import RunDirectory
 
 
 @contextlib.contextmanager
 def alone(directory: RunDirectory | None) -> Iterator[None]:
-    """Hold the lock of a folder; the system releases it with the process, even by a kill.
+    """Hold the lock of a folder, which the system releases with the process, even by a kill.
 
-    Raises RunError if another writes there. Where a file system knows no locks, all may write.
+    Raises RunError if another process writes there. File systems without locks let all write.
     """
     if directory is None:
         yield
@@ -29,8 +24,8 @@ def alone(directory: RunDirectory | None) -> Iterator[None]:
     except Timeout:
         said = f"{directory.path}: another process is writing there; wait for it, or stop it first"
         raise RunError(said) from None
-    except (OSError, NotImplementedError):  # no locks here, or the folder cannot be written:
-        pass  # writing will report it
+    except (OSError, NotImplementedError):
+        pass  # there are no locks; or the folder cannot be written, which writing will report
     try:
         yield
     finally:

@@ -1,27 +1,26 @@
-"""Files from which parts and solids were made, kept in the folder of a run."""
+"""Copies of the files of parts and solids in the folder of a run.
 
-from __future__ import annotations
+So a run goes on with the same parts and solids, and can be moved, even if the files change.
+"""
 
 import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mesokit.case.given.file import FromContents
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.shape.sampled import Sampled
+from mesokit.geometry.solids.solids import Solids
 from mesokit.io.atomic import replacing
 from mesokit.io.run_directory import RunDirectory
 
-if TYPE_CHECKING:
-    from mesokit.geometry.solids.solids import Solids
-
 
 def kept_row(parts: tuple[Any, ...], key: str, name: str, folder: Path) -> tuple[Any, ...]:
-    """Components of which each holds the contents of the file of its part of that key, as
-    `kept_part` has it; files are named by `name`, the number of the component, and the key."""
+    """Components with copies of the files of their parts of a key, like `kept_part`. Copies are
+    named by `name`, the number of the component, and the key."""
     found = tuple(
         _kept(part, key, f"{name}-{n}-{key}", folder) for n, part in enumerate(parts, start=1)
     )
@@ -29,23 +28,18 @@ def kept_row(parts: tuple[Any, ...], key: str, name: str, folder: Path) -> tuple
 
 
 def kept_part(whole: Any, key: str, folder: Path) -> Any:
-    """A case, or a component, whose part of that key holds the contents of its file, if it has one:
-    they are written into the folder, under the last name of the key, now.
-
-    So a run goes on with the same part, and can be moved, whatever becomes of the file. Raises
-    RunError.
-    """
+    """A case or a component whose part of a key reads a copy of its file, if it has one. The copy
+    is written into the folder now, under the last name of the key. Raises RunError."""
     name, _, rest = key.partition(".")
-    part: Any = getattr(whole, name)
-    if rest:
-        kept = kept_part(part, rest, folder) if part is not None else None
-    else:
+    if not rest:
         return _kept(whole, name, name, folder)
+    part: Any = getattr(whole, name)
+    kept = kept_part(part, rest, folder) if part is not None else None
     return whole if kept is part else dataclasses.replace(whole, **{name: kept})
 
 
 def _kept(whole: Any, key: str, name: str, folder: Path) -> Any:
-    """The component whose part of that key is read from a file of that name in the folder."""
+    """The component whose part of a key reads a copy of its file, of that name in the folder."""
     part = getattr(whole, key)
     if not isinstance(part, FromContents):
         return whole
@@ -57,10 +51,9 @@ def _kept(whole: Any, key: str, name: str, folder: Path) -> Any:
 
 
 def kept(walls: Sequence[Any], solids: Solids, folder: Path) -> tuple[Any, ...]:
-    """The walls with the distances that their files gave, which are written into the folder now.
+    """Walls with copies of the distances from files, which are written into the folder now.
 
-    So a run goes on with the same solids, and can be moved, whatever becomes of the files. Raises
-    RunError.
+    Raises RunError.
     """
     found = list(walls)
     for i, wall in enumerate(walls):

@@ -1,6 +1,4 @@
-"""Where the numbers of a run come from: case, versions, host, and the sources of mesokit."""
-
-from __future__ import annotations
+"""Origin of the numbers of a run: case, versions, host, and the sources of mesokit."""
 
 import contextlib
 import functools
@@ -14,14 +12,12 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.outside import outside_parts
 from mesokit.io.checkpoint import digest, digest_of_file
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
 
 LIBRARIES = ("mesokit", "numpy", "scipy", "numba", "h5py", "matplotlib", "pydantic")
 PACKAGE = Path(__file__).parents[1]
@@ -29,13 +25,12 @@ SECONDS = 5  # for git to answer
 
 
 def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
-    """Where the numbers of a run come from, as it starts: case, versions, host, time.
+    """Record of a run at its start: case, versions, host, time.
 
-    `sources` is the state of mesokit, `starts_from` that of the files and runs it starts from.
-    `units` says what a reduced unit is in SI, None if the case does not; `parts` which classes come
-    from outside mesokit, and from where.
-    `threads` are those of each rank. `ended` and `failed` (why) are None, `timings` (of rank 0) and
-    `shared_work` (how several ranks have shared it) empty until someone fills them in.
+    `sources` is the state of mesokit, `starts_from` that of files and runs of the first state.
+    `units` has reduced units in SI, None without them in the case; `parts` are classes from outside
+    mesokit. `threads` are those of each rank. Later `ended`, `failed` (the reason), `timings` (of
+    rank 0) and `shared_work` (of several ranks) are filled in.
     """
     return {
         **recorded_case(case),
@@ -62,20 +57,14 @@ def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
 
 
 def recorded_case(case: Case) -> dict[str, Any]:
-    """What a record says of the case itself, and of its units."""
-    text = case.to_toml()
-    return {"case": text, "case_digest": digest(text), "units": _units(case)}
-
-
-def _units(case: Case) -> dict[str, Any] | None:
-    convert = method_of(case).si
-    if case.units is None or convert is None:
-        return None
-    return dict(convert(case).record())
+    """The part of a record about the case and its units."""
+    text, convert = case.to_toml(), method_of(case).si
+    units = None if case.units is None or convert is None else dict(convert(case).record())
+    return {"case": text, "case_digest": digest(text), "units": units}
 
 
 def now() -> str:
-    """The time, as texts sort."""
+    """The present time as a text; later ones are sorted behind it."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
@@ -99,10 +88,10 @@ def _processor() -> str:
 
 @functools.cache
 def sources() -> dict[str, str | None]:
-    """A digest of all sources of mesokit, and the commit they are of, if anything says so.
+    """A digest of all sources of mesokit, and their commit if it is known.
 
-    The digest tells any two states apart, committed or not; `changed` says whether they are
-    still those of the commit.
+    The digest differs between any two states, committed or not; `changed` is "true" if they differ
+    from the commit.
 
     >>> len(sources()["digest"])
     64
@@ -118,14 +107,12 @@ def sources() -> dict[str, str | None]:
 
 
 def _checked_out() -> dict[str, str | None] | None:
-    """The commit of the folder that the package lies in, None if it is no clone."""
+    """The commit of the folder of the package, None if it is no clone."""
     root = PACKAGE.parents[1]
-    if not (root / ".git").exists():
+    if not (root / ".git").exists() or (commit := _git(root, "rev-parse", "HEAD")) is None:
         return None
-    said = [_git(root, "rev-parse", "HEAD"), _git(root, "status", "--porcelain", "--", "src")]
-    if said[0] is None:
-        return None
-    return {"commit": said[0], "changed": None if said[1] is None else str(bool(said[1])).lower()}
+    status = _git(root, "status", "--porcelain", "--", "src")
+    return {"commit": commit, "changed": None if status is None else str(bool(status)).lower()}
 
 
 def _git(root: Path, *words: str) -> str | None:
@@ -143,7 +130,7 @@ def _git(root: Path, *words: str) -> str | None:
 
 
 def _installed() -> dict[str, str | None]:
-    """The commit that pip installed, where it did so from a repository."""
+    """The commit that pip installed from a repository, if it did."""
     commit = None
     with contextlib.suppress(metadata.PackageNotFoundError, ValueError, AttributeError, TypeError):
         text = metadata.distribution("mesokit").read_text("direct_url.json")
@@ -152,20 +139,18 @@ def _installed() -> dict[str, str | None]:
 
 
 def parents(starts: Mapping[str, Path]) -> dict[str, dict[str, Any]]:
-    """What a case starts from, by key: the path, and digests that tell its state from any other.
+    """Files and runs of the first state of a case, by key: path and digests of the contents.
 
-    Of a run: of its last checkpoint, its case, and the sources that it was made with.
+    The digests of a run are those of its last checkpoint, its case, and its sources of mesokit.
     """
     found: dict[str, dict[str, Any]] = {}
     for key, path in starts.items():
-        record: dict[str, Any] = {"path": str(path)}
+        found[key] = record = {"path": str(path)}
         file = path / "checkpoint.npz" if path.is_dir() else path
         with contextlib.suppress(OSError):
             record["sha256"] = digest_of_file(file)
         if path.is_dir():
             with contextlib.suppress(OSError, ValueError, AttributeError):
                 earlier = json.loads((path / "provenance.json").read_text(encoding="utf-8"))
-                for name in ("case_digest", "sources"):
-                    record[name] = earlier.get(name)
-        found[key] = record
+                record |= {name: earlier.get(name) for name in ("case_digest", "sources")}
     return found

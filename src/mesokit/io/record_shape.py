@@ -1,4 +1,4 @@
-"""What the record of a run holds, and whether one that was read does."""
+"""Keys and types of the record of a run, and a check of a record that was read."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -39,7 +39,7 @@ SHARED_WORK = {
 
 
 def misshapen(record: Any) -> str | None:
-    """What is wrong with a record, in words; None where nothing is. Keys may be missing.
+    """The first error of a record in words, None without one. Keys may be missing.
 
     >>> misshapen({"seed": 4, "resumed": ["2026-01-01"]})
     >>> misshapen({"resumed": 5}), misshapen({"parts": [{"name": "a"}]})

@@ -1,4 +1,4 @@
-"""The folder of a run: what lies where."""
+"""The folder of a run, and the files in it."""
 
 from __future__ import annotations
 
@@ -7,16 +7,24 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.outside import require_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import write_text
 from mesokit.io.record_shape import misshapen
 from mesokit.seam.method import method_of
 
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
+
+class _Named:
+    """A file or folder of this name in the folder of a run."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def __get__(self, run: RunDirectory, owner: type) -> Path:
+        return run.path / self.name
 
 
 @dataclass(frozen=True)
@@ -25,90 +33,42 @@ class RunDirectory:
 
     path: Path
 
-    @property
-    def case_file(self) -> Path:
-        """The resolved case."""
-        return self.path / "case.toml"
+    case_file = _Named("case.toml")  # the resolved case
+    provenance_file = _Named("provenance.json")  # versions, seed, host, times
+    data_file = _Named("run.h5")  # results and trajectory, H5MD; there once the run has ended
+    checkpoint_file = _Named("checkpoint.npz")  # the last state from which the run can go on
+    log_file = _Named("log.csv")  # numbers in time
+    study_file = _Named("study.toml")  # there if the folder holds a study, and no run
+    report_file = _Named("report.html")  # all of the run for people
+    progress_file = _Named(".progress")  # number of steps done, while another process runs it
+    lock_file = _Named(".lock")  # held by the process that writes here
+    trajectory_folder = _Named("trajectory")  # frames that are not in the data file yet
+    trajectory_remains = _Named(".trajectory.done")  # the same, while it is being removed
+    trajectory_coming = _Named(".trajectory.coming")  # the same, taken out of the data file
 
-    @property
-    def provenance_file(self) -> Path:
-        """Versions, seed, host, times."""
-        return self.path / "provenance.json"
-
-    @property
-    def data_file(self) -> Path:
-        """Results and trajectory, H5MD; there when the run has ended."""
-        return self.path / "run.h5"
-
-    @property
-    def checkpoint_file(self) -> Path:
-        """The last state from which the run can go on."""
-        return self.path / "checkpoint.npz"
-
-    @property
-    def log_file(self) -> Path:
-        """Numbers in time."""
-        return self.path / "log.csv"
-
-    @property
-    def study_file(self) -> Path:
-        """What a study varies; there if the folder holds one, and no run."""
-        return self.path / "study.toml"
-
-    @property
-    def report_file(self) -> Path:
-        """All of the run for people, where they name no other."""
-        return self.path / "report.html"
-
-    def wall_file(self, number: int | str) -> Path:
+    def wall_file(self, number: int) -> Path:
         """Distances from a solid that was read from a file, by the number of its wall."""
         return self.path / f"wall-{number}.npy"
 
     def part_file(self, name: str) -> Path:
-        """What another part was read from, such as `force.npy`."""
+        """The file of another part, such as `force.npy`."""
         return self.path / f"part-{name}"
-
-    @property
-    def progress_file(self) -> Path:
-        """How many steps are done, while another process runs it."""
-        return self.path / ".progress"
-
-    @property
-    def lock_file(self) -> Path:
-        """Held by the process that writes here."""
-        return self.path / ".lock"
-
-    @property
-    def trajectory_folder(self) -> Path:
-        """Frames that are not in the data file yet."""
-        return self.path / "trajectory"
-
-    @property
-    def trajectory_remains(self) -> Path:
-        """The same while it is being removed."""
-        return self.path / ".trajectory.done"
-
-    @property
-    def trajectory_coming(self) -> Path:
-        """The same while it is being taken out of the data file."""
-        return self.path / ".trajectory.coming"
 
     def figure_file(self, name: str) -> Path:
         """Figure of one result."""
         return self.path / f"{name}.png"
 
     def flow_file(self, kind: str, ending: str) -> Path:
-        """Picture or film of the flow, where users name no other."""
+        """Picture or film of the flow, unless users name another file."""
         return self.path / f"flow-{kind}{ending}"
 
     def files_of_parts(self) -> list[Path]:
-        """All that is kept of files from which parts of the case were read."""
-        kept = self.wall_file("*"), self.part_file("*")
-        return [path for file in kept for path in self.path.glob(file.name)]
+        """Copies of the files from which parts of the case were read."""
+        return [*self.path.glob("wall-*.npy"), *self.path.glob("part-*")]
 
     @classmethod
     def create(cls, path: str | Path, case: Case) -> RunDirectory:
-        """Make the folder and write the resolved case, and what it is made from.
+        """Make the folder, and write the resolved case and the files of its parts.
 
         Raises RunError if something is there already, or the folder cannot be written.
         """
@@ -123,7 +83,7 @@ class RunDirectory:
         try:
             kept = method_of(case).keep_files(case, run.path)
             write_text(run.case_file, kept.to_toml(run.path))
-        except BaseException:  # a folder without a case holds no run, and would be in the way
+        except BaseException:  # a folder with files but no case would refuse the next try
             for left in run.files_of_parts():
                 left.unlink(missing_ok=True)
             if made:
@@ -190,7 +150,7 @@ class RunDirectory:
 
     @property
     def record_lost(self) -> str:
-        """That a run which has begun has no record, nothing if it has. Raises RunError."""
+        """A warning if a run that has begun has no record, else "". Raises RunError."""
         begun = self.checkpoint_file.exists() or self.data_file.exists()
         if not begun or self.read_provenance():
             return ""

@@ -1,26 +1,26 @@
 """Results and comparisons as tables: CSV, pandas, xarray."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.io.atomic import write_text
 from mesokit.io.optional import package
 from mesokit.seam.named import keyed
 from mesokit.seam.result import Comparison, Result
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
 EXTRA = "tables"
 NUMBERS = ("value", "error", "expected", "fit")
+HEADINGS = [  # of the table of comparisons; all but the first two are fields of a Comparison
+    "result", "key", "what", "measured", "error", "expected", "unit", "deviation", "percent",
+    "approximate", "steady", "lower_bound", "note",
+]  # fmt: skip
 
 
 def columns(result: Result) -> dict[str, NDArray[Any]]:
@@ -44,13 +44,11 @@ def dataframe(result: Result) -> Any:
 
 def dataset(result: Result) -> Any:
     """A result as an xarray.Dataset: value, error, expected and fit over its coordinates."""
-    xarray = package("xarray", "labelled arrays", EXTRA)
     unit = {name: {"units": text} for name, text in result.units.items()}
-    axes = list(result.x)
-    numbers = {
-        name: (axes, array, unit.get("value", {})) for name, array in _numbers(result).items()
-    }
+    axes, own = list(result.x), unit.get("value", {})
+    numbers = {name: (axes, array, own) for name, array in _numbers(result).items()}
     places = {name: ([name], axis, unit.get(name, {})) for name, axis in result.x.items()}
+    xarray = package("xarray", "labelled arrays", EXTRA)
     return xarray.Dataset(numbers, places, _about(result))
 
 
@@ -84,24 +82,12 @@ def rows(results: Mapping[str, Result]) -> list[dict[str, Any]]:
 
 def record(comparison: Comparison) -> dict[str, Any]:
     """A comparison as plain numbers and texts."""
-    c = comparison
-    return {
-        "what": c.what,
-        "measured": number(c.measured),
-        "error": number(c.error),
-        "expected": number(c.expected),
-        "unit": c.unit,
-        "deviation": number(c.deviation),
-        "percent": number(c.percent),
-        "approximate": c.approximate,
-        "steady": c.steady,
-        "lower_bound": c.lower_bound,
-        "note": c.note,
-    }
+    found = {name: getattr(comparison, name) for name in HEADINGS[2:]}
+    return {k: v if isinstance(v, str | bool) else number(v) for k, v in found.items()}
 
 
 def number(value: float) -> float | None:
-    """A number that JSON knows.
+    """A number for JSON, which has neither nan nor infinity.
 
     >>> number(math.nan), number(np.float64(2))
     (None, 2.0)
@@ -124,21 +110,13 @@ def rows_text(results: Mapping[str, Result]) -> str:
     return _text(HEADINGS, (row.values() for row in rows(results)))
 
 
-HEADINGS = ["result", "key", *record(Comparison("", 0.0, 0.0))]
-
-
 def _numbers(result: Result) -> dict[str, NDArray[Any]]:
     found = {name: getattr(result, name) for name in NUMBERS}
     return {name: array for name, array in found.items() if array is not None}
 
 
 def _about(result: Result) -> dict[str, Any]:
-    return {
-        "name": result.name,
-        "label": result.label,
-        "theory": result.theory,
-        "samples": result.samples,
-    }
+    return {name: getattr(result, name) for name in ("name", "label", "theory", "samples")}
 
 
 def _text(headings: list[str], table: Iterable[Iterable[Any]]) -> str:

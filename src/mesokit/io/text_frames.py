@@ -1,30 +1,30 @@
-"""Frames as text: dumps of LAMMPS and extended XYZ. Both are long; bonds have no place in them.
+"""Frames as text: dumps and data files of LAMMPS, and extended XYZ. None of them has bonds.
 
-Columns have the names that LAMMPS, VMD and OVITO know: of spheres also radius and angular velocity.
+Columns have the names of LAMMPS, VMD and OVITO: of spheres also radius and angular velocity.
 """
 
-from __future__ import annotations
-
+import math
+from collections import deque
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import Any, TextIO
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from mesokit.io.moments import Moment, Particles
+from mesokit.io.moments import Moment, Particles
 
-FIGURES = "%.9g"  # of a number: all that single precision has
+FIGURES = "%.9g"  # of a number: all digits of single precision
+EXACT = " %.17g"  # a number with all digits of double precision
 
 
 def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
-    """A text dump of LAMMPS: numbers from 1, wrapped positions, images and velocities if known."""
+    """A text dump of LAMMPS: ids from 1, wrapped positions, images and velocities if known."""
     marks = " ".join("ff" if shut else "pp" for shut in particles.closed)
     with path.open("w", encoding="utf-8", newline="\n") as file:
         for now in moments:
             bounds = np.stack([np.zeros(3), particles.size], axis=1)
             head, tilts = f"ITEM: BOX BOUNDS {marks}", ["", "", ""]
-            if now.tilt:  # the bounds are those of a box that holds the leaning one
+            if now.tilt:  # bounds of an upright box around the tilted one
                 bounds[0] += min(0.0, now.tilt), max(0.0, now.tilt)
                 head, tilts = f"ITEM: BOX BOUNDS xy xz yz {marks}", [f" {now.tilt:.9g}", " 0", " 0"]
             file.write(f"ITEM: TIMESTEP\n{now.step}\nITEM: NUMBER OF ATOMS\n")
@@ -46,7 +46,7 @@ def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
 
 
 def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
-    """Extended XYZ: kinds by name, molecules from 1; velocities if known; images have no place."""
+    """Extended XYZ: kinds by name, molecules from 1, velocities if known; no images."""
     kinds = np.array(particles.names)[particles.kind]
     open_axes = " ".join("F" if shut else "T" for shut in particles.closed)
     with path.open("w", encoding="utf-8", newline="\n") as file:
@@ -61,18 +61,42 @@ def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                 f"Properties=species:S:1:pos:R:3:id:I:1:molecule:I:1:radius:R:1{velocity}{spin}"
                 f' Time={now.time:.9g} Step={now.step} pbc="{open_axes}"\n'
             )
-            _table(
-                file,
-                [
-                    ("species", "%s", kinds),
-                    *_vector("x y z", FIGURES, now.position),
-                    ("id", "%d", particles.number + 1),
-                    ("molecule", "%d", particles.molecule + 1),
-                    ("radius", FIGURES, 0.5 * particles.diameter),
-                    *_vector("vx vy vz", FIGURES, now.velocity),
-                    *_vector("wx wy wz", FIGURES, now.spin),
-                ],
-            )
+            columns: list[tuple[str, str, Any]] = [
+                ("species", "%s", kinds), *_vector("x y z", FIGURES, now.position),
+                ("id", "%d", particles.number + 1), ("molecule", "%d", particles.molecule + 1),
+                ("radius", FIGURES, 0.5 * particles.diameter),
+                *_vector("vx vy vz", FIGURES, now.velocity),
+                *_vector("wx wy wz", FIGURES, now.spin),
+            ]  # fmt: skip
+            _table(file, columns)
+
+
+def data_of_spheres(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
+    """The last frame as a data file of LAMMPS, atom style sphere: diameters, densities and spins.
+
+    In LAMMPS disks are spheres that stay in a plane, and so is their density.
+    """
+    now = deque(moments, maxlen=1).pop()
+    n, numbers = len(particles.number), particles.number + 1
+    density = particles.mass / (math.pi / 6 * particles.diameter**3)
+    image = np.zeros((n, 3), int) if now.image is None else now.image
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        kinds = " ".join(particles.names)
+        file.write(f"spheres of mesokit at step {now.step}, time {now.time:.9g}: {kinds}\n\n")
+        file.write(f"{n} atoms\n{len(particles.names)} atom types\n\n")
+        low = np.zeros(3)
+        low[particles.dimension :] = -0.5  # LAMMPS needs the plane of disks inside its box
+        for axis, start, length in zip("xyz", low.tolist(), particles.size.tolist(), strict=True):
+            file.write(f"{start:.17g} {start + length:.17g} {axis}lo {axis}hi\n")
+        if now.tilt:
+            file.write(f"{now.tilt:.17g} 0 0 xy xz yz\n")
+        columns = [numbers, particles.kind + 1, particles.diameter, density, now.position, image]
+        file.write("\nAtoms # sphere\n\n")
+        np.savetxt(file, np.column_stack(columns), fmt=f"%d %d{EXACT * 5} %d %d %d")
+        if now.velocity is not None:
+            spin = np.zeros((n, 3)) if now.spin is None else now.spin
+            file.write("\nVelocities\n\n")
+            np.savetxt(file, np.column_stack([numbers, now.velocity, spin]), fmt=f"%d{EXACT * 6}")
 
 
 def _vector(names: str, form: str, values: Any) -> Iterator[tuple[str, str, Any]]:

@@ -1,45 +1,37 @@
-"""Frames of a trajectory, and how they outlive a crash.
+"""Frames of a trajectory, in files that survive a crash.
 
-While a run goes on, frames are kept in memory and written out in segments: when there are many,
-and before every checkpoint. A segment is one file, written whole. A run that goes on from a
-checkpoint drops the frames that came after it, so that nothing is missing and nothing is there
-twice. At the end all frames go to the data file of the run, one by one.
+During a run, frames are kept in memory and written in segments: when there are many, and before
+every checkpoint. A segment is one file, written whole. A run that goes on from a checkpoint drops
+later frames, so no frame is missing or there twice. At the end all go to the data file of the run.
 """
-
-from __future__ import annotations
 
 import math
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.trajectory import Trajectory
 from mesokit.errors import RunError
 from mesokit.io.arrays_file import LARGE, load, one, save
 from mesokit.io.atomic import delete_folder
 
-if TYPE_CHECKING:
-    from mesokit.case.trajectory import Trajectory
-
 Frame = dict[str, Any]  # arrays, or what comes in pieces
-OWN = ("mass", "diameter")  # what each sphere has of its own, the same in all frames
+OWN = ("mass", "diameter")  # of each sphere, the same in all frames
 LARGEST = 64 * 2**20  # bytes of frames kept in memory
 
 
 class TrajectoryWriter:
     """Frames of a running simulation, kept in the folder `folder`.
 
-    Particles are stored in the order of their ids. `first` is the id of the first
-    that may be written. Call `record` where a frame is due, `flush`
-    before every checkpoint, `resume` before going on from one.
+    Particles are stored in the order of their ids, from `first` on. Call `record` when a frame is
+    due, `flush` before every checkpoint, `resume` before going on from one.
 
-    Ranks that share the particles keep, each, the rows of theirs (`engine.here`) until all flush
-    together: of these, one is `here`, which writes, and resumes and reads alone.
-
-    Of `spheres` it also keeps what each has of its own (`own`): masses and diameters (n,).
+    Each rank keeps the rows of its particles (`engine.here`) until all flush together; the rank
+    with `here` writes, resumes and reads. Of `spheres`, masses and diameters (n,) are kept (`own`).
     """
 
     def __init__(
@@ -60,32 +52,25 @@ class TrajectoryWriter:
 
     def record(self, engine: Any) -> None:
         """Take one frame of an engine. Raises RunError if a full memory cannot be written out."""
-        frame: Frame = {"step": np.array(engine.step), "time": np.array(engine.time)}
         shares = hasattr(engine, "here")
         of = engine.here if shares else engine
         ids = of.ids(self.first, self.first + self.number) if shares else self.ids
         real = np.dtype(self.trajectory.precision)
+        readings = {
+            "position": lambda: _inside(of.positions(ids).astype(real), engine.box),
+            "velocity": lambda: of.velocities(ids).astype(real),
+            "spin": lambda: of.spins(ids).astype(real),
+            "site": lambda: of.sites(ids).astype(np.int16),
+            "image": lambda: of.images(ids).astype(np.int32),
+        }
         fields = self.trajectory.fields
-        if "position" in fields:
-            frame["position"] = _inside(of.positions(ids).astype(real), engine.box)
-        if "velocity" in fields:
-            frame["velocity"] = of.velocities(ids).astype(real)
-        if "spin" in fields:
-            frame["spin"] = of.spins(ids).astype(real)
-        if "site" in fields:
-            frame["site"] = of.sites(ids).astype(np.int16)
-        if "image" in fields:
-            frame["image"] = of.images(ids).astype(np.int32)
+        frame: Frame = {name: read() for name, read in readings.items() if name in fields}
         if self.spheres and not self._own:
             self._own = {"mass": of.masses(ids), "diameter": of.diameters(ids)}
         if shares:
             places = ids - self.first
-            frame |= {
-                name: of.spread(self.number, places, rows)
-                for name, rows in frame.items()
-                if name not in ("step", "time")
-            }
-        self._add(frame)
+            frame = {k: of.spread(self.number, places, rows) for k, rows in frame.items()}
+        self._add({"step": np.array(engine.step), "time": np.array(engine.time), **frame})
 
     @property
     def ids(self) -> NDArray[np.int64]:
@@ -94,7 +79,7 @@ class TrajectoryWriter:
 
     @property
     def own(self) -> Frame:
-        """Masses and diameters (n,) of spheres; nothing of others, and before the first frame.
+        """Masses and diameters (n,) of spheres; {} for others, and before the first frame.
 
         Raises RunError for a damaged file.
         """
@@ -107,10 +92,7 @@ class TrajectoryWriter:
         return self.folder / "own.npz"
 
     def take_back(self, frames: Iterable[Frame], own: Frame) -> None:
-        """Make segments again of frames that have gone to the data file, unless they are there.
-
-        `own` is what spheres have of their own there.
-        """
+        """Make segments again from the frames and `own` of a data file, unless they are there."""
         if len(self.steps()):
             return
         delete_folder(self.coming)  # we may have been killed here before
@@ -124,7 +106,7 @@ class TrajectoryWriter:
 
     @property
     def coming(self) -> Path:
-        """Where segments are made that are to be there all at once."""
+        """Folder in which segments are made, to be renamed when all are there."""
         return self.folder.with_name(f".{self.folder.name}.coming")
 
     def _add(self, frame: Frame) -> None:
@@ -178,7 +160,7 @@ class TrajectoryWriter:
         done = self.folder.with_name(f".{self.folder.name}.done")
         delete_folder(done)  # we may have been killed here before
         if self.folder.is_dir():
-            self.folder.rename(done)  # all or none, should we be killed here
+            self.folder.rename(done)  # all or none, also if we are killed here
             shutil.rmtree(done, ignore_errors=True)
 
     def _write(self, frames: list[Frame]) -> None:
@@ -195,16 +177,13 @@ class Stacked:
         self.shape = len(entries), *entries[0].shape
 
     def blocks(self) -> Iterator[NDArray[Any]]:
-        """Its rows, so many at a time."""
+        """Its rows, some at a time."""
         for entry in self.entries:
-            if hasattr(entry, "blocks"):
-                yield from entry.blocks()
-            else:
-                yield entry
+            yield from entry.blocks() if hasattr(entry, "blocks") else [entry]
 
 
 def _inside(position: NDArray[Any], box: NDArray[Any]) -> NDArray[Any]:
-    """Rounding to float32 may lift a particle onto the upper face: keep it just below."""
+    """Positions below the upper faces, onto which rounding to float32 may lift them."""
     edge = np.asarray(box, position.dtype)
     return np.where(position >= edge, np.nextafter(edge, np.zeros_like(edge)), position)
 
@@ -212,12 +191,12 @@ def _inside(position: NDArray[Any], box: NDArray[Any]) -> NDArray[Any]:
 def _load(path: Path, name: str) -> NDArray[Any]:
     try:
         return one(path, name)
-    except Exception:  # zip, zlib and numpy have many words for a damaged file
+    except Exception:  # zip, zlib and numpy have many errors for a damaged file
         raise RunError(f"{path}: damaged: it is not a whole segment of a trajectory") from None
 
 
 def _read(path: Path) -> Iterator[Frame]:
-    """The frames of a segment; large ones stay there, and are read where they are asked."""
+    """The frames of a segment; large ones are maps of the file."""
     try:
         arrays = load(path, LARGE)
     except Exception:

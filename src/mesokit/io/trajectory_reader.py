@@ -32,9 +32,8 @@ class TrajectoryReader:
             self.id: NDArray[np.int64] = group["id"][()]
             self.mass: NDArray[np.float64] = group["mass"][()]
             self.species: NDArray[np.int64] = group["species"][()]
-            self.diameter: NDArray[np.float64] | None = None
-            if "radius" in group:
-                self.diameter = 2 * group["radius"][()]
+            radius = group["radius"][()] if "radius" in group else None
+            self.diameter: NDArray[np.float64] | None = None if radius is None else 2 * radius
 
     def __len__(self) -> int:
         return len(self.step)

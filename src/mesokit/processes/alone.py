@@ -1,12 +1,22 @@
-"""A process that runs a case alone: what all ranks are asked, and how one answers."""
+"""One process that runs a case, and the interface that several ranks have as well."""
 
 import contextlib
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
-
-from mesokit.processes.order import Coming, Order
+from typing import Any, NamedTuple, TypeVar
 
 T = TypeVar("T")
+
+
+class Order(NamedTuple):
+    """Decision of rank 0 for all ranks: go on to step `target`, with a checkpoint there if `save`,
+    or stop here by the signal of number `stop` if that is not 0."""
+
+    target: int
+    save: bool
+    stop: int
+
+
+Coming = Callable[[], Order]  # waits for an order
 
 
 class Alone:
@@ -20,76 +30,75 @@ class Alone:
     comm: Any = None  # of the ranks' engines
 
     def on_root(self, function: Callable[[], T]) -> T:
-        """What a function says that rank 0 alone calls. Raises its MesokitError on all ranks."""
+        """The result of a function that rank 0 alone calls. All ranks raise its MesokitError."""
         return function()
 
     def by_root(self, function: Callable[[], T]) -> T:
-        """What a function says that all ranks call: the answer of rank 0, or its MesokitError."""
+        """The result of rank 0, or its MesokitError, of a function that all ranks call."""
         return function()
 
     def each(self, function: Callable[[], T]) -> T:
-        """What a function says that all ranks call, each for its part.
+        """The result of a function that all ranks call, each for its part.
 
-        Raises the MesokitError of one of them, the first that has any, on all ranks.
+        If it raises MesokitErrors, the first one is raised on all ranks.
         """
         return function()
 
     def answers(self, function: Callable[[], T]) -> list[T]:
-        """What a function of the user says that all ranks call: the answers of all.
+        """The results of a function of the user that all ranks call.
 
-        Where it fails, or ends the program, on some ranks, RunError on all names the first of them;
-        its own error where it does on all.
+        If it fails or ends the program on some ranks, RunError on all ranks names the first of
+        them. If it does on all ranks, each raises its own error.
         """
         return [function()]
 
     def gathered(self, value: T) -> list[T]:
-        """What each rank has, on all ranks."""
+        """The values of all ranks, on all ranks."""
         return [value]
 
     def require_same(self, facts: Callable[[], Mapping[str, str]]) -> None:
-        """Raise RunError, which names a rank and what differs, if these are not the same on all."""
+        """Raise RunError, which names a rank and the difference, if facts differ between ranks."""
 
     def quietly(self) -> contextlib.AbstractContextManager[Any]:
-        """Warnings meanwhile are those of rank 0."""
+        """Suppress warnings meanwhile on all ranks but rank 0."""
         return contextlib.nullcontext()
 
     def again(self, command: str) -> str:
-        """The command for as many ranks as there are now."""
+        """The command for the present number of ranks."""
         return command
 
     # --- how far to go --------------------------------------------------------------------------
 
     def begin(self) -> None:
-        """A run begins: signals told before do not matter any more."""
+        """Begin a run: earlier signals do not matter any more."""
 
     def heard(self, signal: int) -> int:
         """The number of the signal that has come to this rank, or on rank 0 to any; 0 if none."""
         return signal
 
     def ahead(self, decide: Callable[[int], Order], signal: Callable[[], int]) -> Coming:
-        """What to do after the steps in hand: decided by rank 0, before them if others must know.
+        """Return a function that gives the order of rank 0 for the time after the steps in hand.
 
-        `decide` is given the number of a signal that has come to any rank, `signal` says which has
-        come to this one. What is returned must be called, even if it is not needed any more.
+        Several ranks decide before these steps. `decide` takes the number of a signal that has come
+        to any rank, `signal` returns that of this rank. Each returned function must be called.
         """
         return lambda: decide(signal())
 
     # --- the end --------------------------------------------------------------------------------
 
     def failed(self, note: Callable[[str], Any]) -> None:
-        """A run fails here: note it on record, once for all ranks.
+        """Record once for all ranks that the run fails here.
 
-        `note` is given what comes before the reason: the name of the rank, where not all fail.
+        `note` takes the text before the reason: the name of the rank if not all ranks fail.
         """
         note("")
 
     def leave(self, say: Callable[[str], Any], status: int) -> None:
-        """Say why this process ends with a status, once for all ranks that end so.
+        """Print why this process ends with a status, once for all ranks that end so.
 
-        `say` is given the name of the rank, nothing where all are meant. Where others do not end
-        as well, they are made to.
+        `say` takes the name of the rank, or "" if all ranks end. Ranks that do not are ended.
         """
         say("")
 
     def ended(self, status: int) -> None:
-        """This process has nothing more to do, and ends in order."""
+        """End this process in order."""

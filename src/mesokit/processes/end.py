@@ -7,19 +7,19 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-PATIENCE = 4.0  # seconds in which others may come to the same end
-LISTEN = 0.3  # seconds in which those that fail too can say so
-KILLED = 10.0  # seconds in which the one that speaks ends this rank
+PATIENCE = 4.0  # seconds in which other ranks may come to the same end
+LISTEN = 0.3  # seconds for messages of other ranks that fail
+KILLED = 10.0  # seconds in which the rank that prints the reason ends this one
 FAILED = 2  # tag of the message that a rank fails
 
 
 def all_come(comm: Any) -> bool:
-    """Whether all ranks have come here within a short time."""
+    """True if all ranks come here within a short time."""
     return _within(PATIENCE, comm.Ibarrier().Test)
 
 
 def first_of_those(comm: Any) -> bool:
-    """Whether this is the lowest rank of those that have come here; others wait for its word."""
+    """True on the lowest of the ranks that have come here; others wait to be ended by it."""
     sent = [comm.isend(comm.rank, other, FAILED) for other in range(comm.rank + 1, comm.size)]
     if _within(LISTEN, lambda: comm.Iprobe(tag=FAILED)):
         time.sleep(KILLED)
@@ -36,14 +36,8 @@ def _within(seconds: float, come: Callable[[], bool]) -> bool:
     return True
 
 
-def speak(say: Callable[[], Any]) -> None:
-    """Say something even where this rank is to be silent."""
-    sys.stderr = sys.__stderr__ or sys.stderr
-    say()
-
-
 def abort(comm: Any, status: int) -> None:
-    """End all ranks. The library would say so as well: it is not heard."""
+    """End all ranks, without the message of the library."""
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
@@ -51,7 +45,7 @@ def abort(comm: Any, status: int) -> None:
 
 
 def watch(here: Any) -> None:
-    """An exception that is not caught ends all ranks, as `here.leave` does."""
+    """Let an exception that is not caught end all ranks, as `here.leave` does."""
     earlier = sys.excepthook
 
     def hook(kind: type[BaseException], value: BaseException, trace: Any) -> None:
@@ -67,12 +61,12 @@ def watch(here: Any) -> None:
 
 
 def leave_orderly(status: int) -> None:
-    """End this process without a word more."""
+    """End this process at once: freeing its memory would take seconds."""
     from mpi4py import MPI
 
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
-    # the library waits for the others, of whom one may have gone without a word
+    # MPI waits for all ranks, one of which may have been killed
     late = threading.Timer(KILLED, os._exit, (status,))
     late.daemon = True
     late.start()

@@ -1,4 +1,4 @@
-"""Ranks on this machine: they are started by `mpiexec`, and what becomes of them is said once."""
+"""Ranks on this machine: `mpiexec` starts them, and one line says how they end."""
 
 import contextlib
 import importlib.util
@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import IO, NamedTuple, TextIO
 
 from mesokit.errors import RunError
-from mesokit.processes import lifeline, parent
+from mesokit.processes import parent
 from mesokit.processes.signals import catching
 
-# what launchers and libraries say about a rank that has ended, each in its way
+# lines of launchers and libraries about a rank that has ended
 NOISE = re.compile(
     r"^=+$|^=   (BAD TERMINATION|PID \d|EXIT CODE|CLEANING UP|YOU CAN IGNORE|KILLED BY)"
     r"|^YOUR APPLICATION TERMINATED|^This typically refers to a problem"
@@ -28,38 +28,41 @@ NOISE = re.compile(
 )
 DIED = re.compile(r"=   PID (?P<process>\d+) |process rank (?P<rank>\d+) with PID")
 SIGNAL = re.compile(r"EXIT STRING: .*\(signal (\d+)\)|exited on signal (\d+)")
-CURSOR = "\x1b[?25h\n"  # shown again, where a bar has been cut off
+CURSOR = "\x1b[?25h\n"  # visible again after a bar that was cut off
 
 
 class End(NamedTuple):
-    """How ranks have ended: the status, and the reason as far as it is known."""
+    """How ranks have ended: status, and reason as far as it is known."""
 
     status: int
     why: str
 
 
 def start(ranks: int, arguments: Sequence[str]) -> End:
-    """Run `mesokit` with these arguments on so many ranks; wait, and pass on what they say.
+    """Run `mesokit` with these arguments on several ranks, wait, and pass on their output.
 
-    A signal goes to rank 0, which stops all at a checkpoint; a second one ends them at once. If
-    this process is killed, they end by themselves.
+    A signal goes to rank 0, which stops all ranks at a checkpoint; a second one ends them at once.
+    If this process is killed, they end by themselves.
 
-    Raises RunError where there is no MPI.
+    Raises RunError without MPI.
     """
     command = [find(), "-n", str(ranks), sys.executable, "-m", "mesokit", *arguments]
-    with contextlib.ExitStack() as held:
-        name = held.enter_context(tempfile.TemporaryDirectory(prefix="mesokit-ranks-"))
-        folder = Path(name)
-        held.enter_context(lifeline.held(folder))
+    with (
+        tempfile.TemporaryDirectory(prefix="mesokit-ranks-") as name,
+        parent.alive(folder := Path(name)),
+    ):
+        environment = os.environ | {parent.FOLDER: name}
+        if sys.stderr.isatty() and hasattr(os, "ttyname"):
+            environment[parent.TERMINAL] = os.ttyname(sys.stderr.fileno())
         process = subprocess.Popen(
             command,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
-            env=os.environ | {parent.FOLDER: name} | _terminal(sys.stderr),
+            env=environment,
             encoding="utf-8",
             errors="replace",
-            start_new_session=True,  # Ctrl-C comes to us alone
+            start_new_session=True,  # Ctrl-C comes to this process alone
         )
         asked: list[signal.Signals] = []
 
@@ -86,9 +89,9 @@ def start(ranks: int, arguments: Sequence[str]) -> End:
 
 
 def find() -> str:
-    """The program that starts ranks: that of this environment, or the first there is.
+    """The program that starts ranks: that of this environment, or the first on the path.
 
-    Raises RunError if there is none, or no mpi4py.
+    Raises RunError without one, or without mpi4py.
     """
     if importlib.util.find_spec("mpi4py") is None:
         raise RunError("--ranks: needs mpi4py: pip install 'mesokit[mpi]'")
@@ -99,19 +102,11 @@ def find() -> str:
     return found
 
 
-def _terminal(stream: TextIO) -> dict[str, str]:
-    """Where rank 0 finds our terminal, if there is one."""
-    ttyname = getattr(os, "ttyname", None)
-    if ttyname is None or not stream.isatty():
-        return {}
-    return {parent.TERMINAL: ttyname(stream.fileno())}
-
-
 def _pass_on(process: subprocess.Popen[str]) -> list[str]:
-    """Say what ranks say; what the launcher says of how they ended is not said."""
+    """Print the output of the ranks; the launcher's own lines are returned instead."""
     kept: list[str] = []
 
-    def say(lines: IO[str], stream: TextIO) -> None:
+    def copy(lines: IO[str], stream: TextIO) -> None:
         for line in lines:
             if NOISE.search(line) or not line.strip():
                 kept.append(line)
@@ -121,15 +116,15 @@ def _pass_on(process: subprocess.Popen[str]) -> list[str]:
                 stream.flush()
 
     assert process.stdout is not None and process.stderr is not None
-    other = threading.Thread(target=say, args=(process.stdout, sys.stdout))
+    other = threading.Thread(target=copy, args=(process.stdout, sys.stdout))
     other.start()
-    say(process.stderr, sys.stderr)
+    copy(process.stderr, sys.stderr)
     other.join()
     return kept
 
 
 def _what_is_known(folder: Path, said: list[str], status: int) -> End:
-    """Which rank has ended, and how, by what the launcher said."""
+    """Which rank has ended, and how, from the lines of the launcher."""
     text, rank_name = "".join(said), "a rank"
     if found := DIED.search(text):
         rank = found["rank"] or parent.rank_of(folder, int(found["process"]))

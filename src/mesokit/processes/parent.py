@@ -1,39 +1,46 @@
-"""What ranks tell the process that has started them: `mesokit run --ranks` of this machine.
+"""Files and variables that connect ranks with `mesokit run --ranks`, the process that starts them.
 
-It gives them a folder, in which each notes its number, and the one that speaks last the status that
-all of this ends with.
+In a temporary folder each rank notes its process number, and the last one that prints notes the
+exit status of all. The parent holds a lock in the folder. The system releases the lock when the
+parent ends, even if it is killed; a rank that then gets the lock ends, so no rank is left running.
 """
 
+import contextlib
 import os
 import sys
+import threading
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
-from mesokit.processes import lifeline
-
 FOLDER = "MESOKIT_RANKS_FOLDER"
-TERMINAL = "MESOKIT_TERMINAL"  # where the progress bar of rank 0 is to be
+TERMINAL = "MESOKIT_TERMINAL"  # terminal for the progress bar of rank 0
+LOCK = "alive"
+PAUSE = 0.5  # seconds between two tries to get the lock
 
 
 def known() -> bool:
-    """Whether there is such a process."""
+    """True if there is such a parent."""
     return FOLDER in os.environ
 
 
 def note_rank(rank: int) -> None:
-    """This process is that rank, and ends with the one that has started it."""
+    """Note the number of this process, and let it end with its parent."""
     if known():
-        lifeline.end_with(Path(os.environ[FOLDER]))
+        folder = Path(os.environ[FOLDER])
+        if (folder / LOCK).exists():
+            threading.Thread(target=_end_with, args=(folder,), daemon=True).start()
         _write(f"rank-{rank}", os.getpid())
 
 
 def note_end(status: int) -> None:
-    """All has been said, and this is the status."""
+    """Note the exit status of all ranks; everything has been printed."""
     if known():
         _write("ended", status)
 
 
 def take_terminal() -> None:
-    """Rank 0 tells its progress where the process that has started it would."""
+    """Let rank 0 draw its progress on the terminal of the parent."""
     name = os.environ.get(TERMINAL)
     if name is not None:
         sys.stderr.flush()
@@ -41,15 +48,13 @@ def take_terminal() -> None:
 
 
 def rank_of(folder: Path, process: int) -> int | None:
-    """Which rank a process was."""
-    for file in folder.glob("rank-*"):
-        if number(file) == process:
-            return int(file.name.partition("-")[2])
-    return None
+    """The rank that a process had."""
+    found = (file for file in folder.glob("rank-*") if number(file) == process)
+    return next((int(file.name.partition("-")[2]) for file in found), None)
 
 
 def number(file: Path) -> int | None:
-    """What a file says, None if it is not there."""
+    """The number in a file, None without one."""
     try:
         return int(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -61,3 +66,32 @@ def _write(name: str, number: int) -> None:
     beside = folder / f".{name}"
     beside.write_text(str(number), encoding="utf-8")
     os.replace(beside, folder / name)
+
+
+@contextlib.contextmanager
+def alive(folder: Path) -> Iterator[None]:
+    """Hold the lock while this process lives; without it if the file system has no locks."""
+    from filelock import FileLock
+
+    lock = FileLock(folder / LOCK)
+    try:
+        lock.acquire(blocking=False)
+    except (OSError, NotImplementedError):
+        (folder / LOCK).unlink(missing_ok=True)
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+def _end_with(folder: Path) -> None:
+    """End this process, whatever it does, as soon as its parent is gone."""
+    from filelock import FileLock
+
+    while (folder / LOCK).exists():  # a parent that ends in order removes it
+        try:
+            FileLock(folder / LOCK).acquire(poll_interval=PAUSE)
+            break
+        except OSError:  # the system cannot answer at present
+            time.sleep(PAUSE)
+    os._exit(1)

@@ -1,31 +1,49 @@
-"""The processes of a run: this one alone, or one of the ranks that an MPI launcher has started."""
+"""The processes of a run: this one alone, or one of the ranks that an MPI launcher has started.
 
-from __future__ import annotations
+MPI is loaded only if there are several processes, because loading takes time.
+"""
 
+import os
 import sys
-from typing import TYPE_CHECKING, TypeAlias
 
 from mesokit import __version__
 from mesokit.errors import RunError
-from mesokit.processes import launcher
 from mesokit.processes.alone import Alone
 
-if TYPE_CHECKING:
-    from mesokit.processes.several import Several
-
-World: TypeAlias = "Alone | Several"
+World = Alone  # or Several, which has the same methods
 _known: World | None = None
+
+# number and rank of processes: variables of MPICH, Intel MPI, MS-MPI and Slurm with PMI-2; of
+# Open MPI; of MVAPICH
+SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE", "MV2_COMM_WORLD_SIZE")
+RANKS = ("PMI_RANK", "OMPI_COMM_WORLD_RANK", "MV2_COMM_WORLD_RANK", "PMIX_RANK")
+
+
+def may_be_several() -> bool:
+    """True if a launcher has set variables of several ranks, or the script has loaded MPI."""
+    if "mpi4py.MPI" in sys.modules:
+        return True
+    sizes = [os.environ[name] for name in SIZES if name in os.environ]
+    if sizes:
+        return any(size != "1" for size in sizes)
+    # PMIx has no variable for the number of ranks; Slurm has
+    return "PMIX_RANK" in os.environ and os.environ.get("SLURM_STEP_NUM_TASKS") != "1"
+
+
+def is_first() -> bool:
+    """True on rank 0, and for one process."""
+    return all(os.environ.get(name, "0") == "0" for name in RANKS)
 
 
 def world() -> World:
     """The processes that run a case together. The first call is collective: all ranks make it.
 
-    Raises RunError where MPI is asked for and not there, and for ranks of different versions.
+    Raises RunError if MPI is needed and missing, and for ranks of different versions.
     """
     global _known
     if _known is None:
         _known = Alone()
-        if launcher.several():
+        if may_be_several():
             _known = _of_mpi()
             here = {"version of mesokit": __version__, "byte order": sys.byteorder}
             _known.require_same(lambda: here)
@@ -33,12 +51,12 @@ def world() -> World:
 
 
 def known() -> World:
-    """The same without asking others: this process alone, as long as it has not asked."""
+    """The same without messages: this process alone until `world` has been called."""
     return _known or Alone()
 
 
 def stay_alone() -> None:
-    """This process has nothing to do with other ranks."""
+    """Let this process run alone, whatever other ranks do."""
     global _known
     _known = Alone()
 
@@ -47,7 +65,7 @@ def _of_mpi() -> World:
     try:
         from mpi4py import MPI
     except ImportError as error:
-        if not launcher.first():  # one says it for all
+        if not is_first():  # rank 0 prints it for all
             raise SystemExit(1) from None
         raise RunError(f"several ranks need mpi4py ({error}): pip install 'mesokit[mpi]'") from None
     if MPI.COMM_WORLD.size == 1:

@@ -12,7 +12,7 @@ Function = Callable[[Any], Any]  # of a Simulation, which imports this file
 
 
 class StopRun(Exception):
-    """What a callback raises to end the run after this step, with a reason if there is one.
+    """Raised by a callback to end the run after this step, with a reason if there is one.
 
     >>> raise StopRun("the polymer has passed")
     Traceback (most recent call last):
@@ -36,9 +36,9 @@ def every(steps: int, call: Function) -> Callback:
     steps : int
         Steps between two calls, counted from the first step of the warm-up on.
     call : function of a Simulation
-        May read `simulation.step`, `time`, `results`, `engine.positions()` and all else that
-        observables ask. It may raise `StopRun`. What else it raises ends the run as a RunError from
-        it. All ranks call it, and must ask the same.
+        May read `simulation.step`, `time`, `results`, `engine.positions()` and all other readings
+        of observables. It may raise `StopRun`; any other exception ends the run as a RunError from
+        it. All ranks call it, and must take the same readings.
 
     Raises
     ------
@@ -71,16 +71,14 @@ class Callbacks:
             raise CaseError(f"callbacks = {show(given)}: expected a list of every(n, function)")
         for i, callback in enumerate(given):
             if not isinstance(callback, Callback):
-                raise CaseError(
-                    f"callbacks[#{i + 1}] = {show(callback)}: expected every(n, function), "
-                    "such as every(100, function)"
-                )
+                form = "expected every(n, function), such as every(100, function)"
+                raise CaseError(f"callbacks[#{i + 1}] = {show(callback)}: {form}")
         self.given = list(given)
-        self.called = -1  # the last step at which they were
-        self.stopped: str | None = None  # why one of them has ended the run
+        self.called = -1  # the last step at which they were called
+        self.stopped: str | None = None  # the reason why one of them has ended the run
 
     def resume(self, step: int) -> None:
-        """Go on from a checkpoint: at its step they were called before it was written."""
+        """Go on from a checkpoint, before which they were called at its step."""
         self.called = step if step > 0 else -1
 
     def next_stops(self, step: int) -> list[int]:
@@ -88,33 +86,24 @@ class Callbacks:
         return [step + each.steps - step % each.steps for each in self.given]
 
     def due(self, step: int) -> bool:
-        """Whether one of them is to be called at this step, and has not been yet."""
+        """True if one of them is to be called at this step, and has not been yet."""
         return step != self.called and any(step % each.steps == 0 for each in self.given)
 
     def call(self, simulation: Any) -> str | None:
-        """Call those that are due at this step; why one of them ends the run, if one does.
+        """Call those that are due at this step; the reason of one that ends the run, or None.
 
         Raises RunError if one of them fails.
         """
-        self.called = simulation.step
-        for each in self.given:
-            if simulation.step % each.steps == 0:
-                self._call(each.call, simulation)
+        self.called = step = simulation.step
+        for function in [each.call for each in self.given if step % each.steps == 0]:
+            name = str(getattr(function, "__name__", type(function).__name__))
+            try:
+                function(simulation)
+            except StopRun as stop:
+                self.stopped = str(stop) or name
+            except MesokitError:
+                raise
+            except Exception as error:
+                text = " ".join(f"{type(error).__name__}: {error}".split())
+                raise RunError(f"callback {name} at step {step}: {text}") from error
         return self.stopped
-
-    def _call(self, function: Function, simulation: Any) -> None:
-        try:
-            function(simulation)
-        except StopRun as stop:
-            self.stopped = str(stop) or _name(function)
-        except MesokitError:
-            raise
-        except Exception as error:
-            gist = " ".join(f"{type(error).__name__}: {error}".split())
-            raise RunError(
-                f"callback {_name(function)} at step {simulation.step}: {gist}"
-            ) from error
-
-
-def _name(function: Function) -> str:
-    return str(getattr(function, "__name__", type(function).__name__))

@@ -1,13 +1,12 @@
-"""The folder of a run: what is kept there while it goes on, and how it goes on from there."""
-
-from __future__ import annotations
+"""The folder of a run: its files while it goes on and at its end."""
 
 import contextlib
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.case.trajectory import written
 from mesokit.errors import CheckpointError, MesokitError, RunError
 from mesokit.io import h5md
@@ -17,21 +16,18 @@ from mesokit.io.one_writer import alone
 from mesokit.io.provenance import now, provenance, recorded_case
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.processes.world import World
+from mesokit.run.log import RunLog
+from mesokit.run.replicas import Replicas
 from mesokit.seam.method import summary_of
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.processes.world import World
-    from mesokit.run.log import RunLog
-    from mesokit.run.replicas import Replicas
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Result
 
 
 class Folder:
-    """Case, frames, log, checkpoints, results, and the record of where they come from.
+    """Case, frames, log, checkpoints, results, and the record of their origin.
 
-    All ranks call the methods, and rank 0 writes: its errors are those of all. All raise RunError
-    for what cannot be written. The process that runs holds the lock of the folder.
+    All ranks call the methods, and rank 0 writes; its errors are errors of all ranks. All raise
+    RunError if writing fails. The process that runs holds the lock of the folder.
     """
 
     def __init__(self, directory: RunDirectory, case: Case, ranks: World, log: RunLog) -> None:
@@ -47,7 +43,7 @@ class Folder:
             self.writer = TrajectoryWriter(case.trajectory, folder, number, first, *kept)
 
     def begin(self, threads: int) -> None:
-        """A run begins here: note where its numbers come from."""
+        """Write the record at the begin of a run."""
         origin = provenance(self.case, threads, self.ranks.size)
         self.ranks.on_root(lambda: self.directory.write_provenance(origin))
 
@@ -59,7 +55,7 @@ class Folder:
             self.writer.record(engine)
 
     def checkpoint(self, replicas: Replicas) -> None:
-        """Write a checkpoint; what came before it is then as safe as it is."""
+        """Write a checkpoint, after all earlier frames and lines of the log."""
 
         def write() -> None:
             if self.writer is not None:
@@ -71,7 +67,7 @@ class Folder:
         self.ranks.by_root(write)
 
     def lengthen(self, case: Case, step: int) -> None:
-        """At this step the run is given the length that the case has now."""
+        """Give the run at this step the length of `case`."""
 
         def write() -> None:
             self._take_back()
@@ -85,7 +81,7 @@ class Folder:
         self.ranks.on_root(write)
 
     def _take_back(self) -> None:
-        """A run that goes on has no results yet: its frames come back out of the data file."""
+        """Remove the results of a run that goes on; its frames become segments again."""
         file = self.directory.data_file
         if self.writer is not None and file.exists():
             self.writer.take_back(h5md.frames(file), h5md.own(file))
@@ -94,8 +90,8 @@ class Folder:
     # --- going on -------------------------------------------------------------------------------
 
     def take_up(self, replicas: Replicas) -> None:
-        """Let replicas go on from the checkpoint, or start if there is none; forget frames that
-        came after it. Raises CheckpointError if it is damaged."""
+        """Restore replicas from the checkpoint, or start them if there is none, and drop later
+        frames. Raises CheckpointError if it is damaged."""
         if self.ranks.on_root(self.directory.checkpoint_file.exists):
             meta = take_up(self.directory, self.case, replicas.all, self.ranks.comm)
             replicas.looked = bool(meta["looked"])
@@ -111,7 +107,7 @@ class Folder:
         self.ranks.on_root(forget)
 
     def go_on(self, replicas: Replicas, threads: int) -> None:
-        """Let log and record go on as well; they begin where the run had not begun."""
+        """Let log and record go on, or begin if the run had not begun."""
         step, last = replicas.step, self.case.run.warmup + self.case.run.steps
 
         def write() -> None:
@@ -120,8 +116,8 @@ class Folder:
             self.log.resume(step)
             ranks = self.ranks.size
             record = _earlier(self.directory) or provenance(self.case, threads, ranks)
-            begun = [now()] if replicas.looked or step > 0 else []
-            resumed = [*record.get("resumed", []), *begun]
+            begun = replicas.looked or step > 0
+            resumed = [*record.get("resumed", []), *[now()] * begun]
             own = {"resumed": resumed, "threads": threads, "ranks": ranks, "failed": None}
             self.directory.write_provenance(record | recorded_case(self.case) | own)
 
@@ -130,30 +126,30 @@ class Folder:
     # --- the end --------------------------------------------------------------------------------
 
     def end(self, results: Mapping[str, Result], spent: Mapping[str, Any]) -> None:
-        """Write results, figures, and the record; `spent` says where the time went."""
-        self.ranks.on_root(lambda: self._end(results, spent))
+        """Write results, figures, and the record; `spent` are the times of stages."""
 
-    def _end(self, results: Mapping[str, Result], spent: Mapping[str, Any]) -> None:
-        record = self.directory.read_provenance() | {"ended": now(), **spent}
-        with contextlib.suppress(MesokitError):  # a file that the start was made from may be gone
-            record["warnings"] = list(summary_of(self.case).warnings)
-        h5md.write(self.directory.data_file, self.case, record, results.values(), self.writer)
-        self.directory.write_provenance(record)
-        from mesokit.report import save_all
+        def write() -> None:
+            record = self.directory.read_provenance() | {"ended": now(), **spent}
+            with contextlib.suppress(MesokitError):  # a file of the first state may be gone
+                record["warnings"] = list(summary_of(self.case).warnings)
+            h5md.write(self.directory.data_file, self.case, record, results.values(), self.writer)
+            self.directory.write_provenance(record)
+            from mesokit.report import save_all
 
-        save_all(results.values(), self.directory.path, self.case)
-        if self.writer is not None:
-            self.writer.remove()
+            save_all(results.values(), self.directory.path, self.case)
+            if self.writer is not None:
+                self.writer.remove()
+
+        self.ranks.on_root(write)
 
 
 def existing(output: str | Path, held: contextlib.ExitStack) -> RunDirectory:
-    """The folder of a run that can go on; no other process writes there while it is held."""
+    """The folder of a run that can go on, with its lock in `held`."""
     directory = RunDirectory.existing(output)
     held.enter_context(alone(directory))
     if not directory.checkpoint_file.exists() and "merged" in _earlier(directory):
-        raise RunError(
-            f"{directory.path}: holds merged runs; go on with those and merge them again"
-        )
+        why = "holds merged runs; go on with those and merge them again"
+        raise RunError(f"{directory.path}: {why}")
     if directory.data_file.exists() and not directory.checkpoint_file.exists():
         raise CheckpointError(
             f"{directory.checkpoint_file}: no such checkpoint, though the run had come to "
@@ -163,14 +159,13 @@ def existing(output: str | Path, held: contextlib.ExitStack) -> RunDirectory:
 
 
 def note_failed(directory: RunDirectory, reason: str) -> None:
-    """Put on record why a run failed, where that can be written: the disk may be what failed."""
+    """Record the reason why a run failed, if it can be written: the disk may be full."""
     with contextlib.suppress(RunError):
         directory.write_provenance(directory.read_provenance() | {"failed": reason})
 
 
 def _earlier(directory: RunDirectory) -> dict[str, Any]:
-    """The record so far, {} if there is none; one that is damaged or lost is a warning, and begun
-    anew."""
+    """The record so far; {} with a warning for one that is damaged or lost."""
     try:
         wrong, record = directory.record_lost, directory.read_provenance()
     except RunError as error:

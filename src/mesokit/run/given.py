@@ -1,6 +1,4 @@
-"""What a simulation is given: a case or its parts, arrays to start from, threads, ranks."""
-
-from __future__ import annotations
+"""Arguments of a simulation: a case or its parts, arrays to start from, threads, ranks."""
 
 import hashlib
 import numbers
@@ -8,7 +6,7 @@ import os
 import platform
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,24 +16,21 @@ from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, show
 from mesokit.errors import CaseError
 from mesokit.processes.cores import usable_cores, which_cores
+from mesokit.processes.world import World
+from mesokit.run.callbacks import Callbacks
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.processes.world import World
-    from mesokit.run.callbacks import Callbacks
 
 MOST_THREADS = 1024
 PIECE = 2**18  # rows
 
 
 def case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, Any]]:
-    """The case, made of its parts if none is given, and the arrays among these to start from."""
+    """The case, made of its parts if none is given, and arrays of its first state."""
     if isinstance(given, str | os.PathLike):
         given = Case.from_toml(Path(given))
     if given is not None and not isinstance(given, Case):
-        raise CaseError(
-            f"Simulation: case = {show(given)}: expected a case, or the path of its file"
-        )
+        text = f"Simulation: case = {show(given)}: expected a case, or the path of its file"
+        raise CaseError(text)
     name = method_named(parts.get("run")) if given is None else given.run.method
     known = methods.load(name).initial.arrays
     arrays = {name: parts.pop(name) for name in known if name in parts}
@@ -43,12 +38,11 @@ def case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, 
         key = next(iter(parts), None)
         hint = f", not {key}{nearest(key, known)}" if key else ""
         raise CaseError(f"Simulation: expected a case, or its parts by name{hint}")
-    arrays = {name: array for name, array in arrays.items() if array is not None}
-    return given or Case(**parts), arrays
+    return given or Case(**parts), {k: array for k, array in arrays.items() if array is not None}
 
 
 def threads_of(given: Any, here: World) -> int:
-    """So many as said, or one for each core, of which ranks on the same cores have a part each."""
+    """The given number, or one for each core; ranks on the same cores share them."""
     if given is None:
         own = platform.node(), which_cores()
         return max(1, usable_cores() // here.gathered(own).count(own))
@@ -71,7 +65,7 @@ def require_ranks(case: Case, ranks: int) -> None:
 
 
 def told(case: Case, callbacks: Callbacks, arrays: Mapping[str, Any]) -> dict[str, str]:
-    """All of it as texts, by which ranks see whether they were given the same."""
+    """The arguments as texts, which must be the same on all ranks."""
     calls = ", ".join(str(each.steps) for each in callbacks.given)
     return {"case": case.to_toml(), "steps of callbacks": f"[{calls}]"} | {
         name: _digest(np.asarray(array)) for name, array in arrays.items()
@@ -79,7 +73,7 @@ def told(case: Case, callbacks: Callbacks, arrays: Mapping[str, Any]) -> dict[st
 
 
 def _digest(array: NDArray[Any]) -> str:
-    """A fingerprint, made piece by piece: there may be no room for another such array."""
+    """A fingerprint, computed in pieces because memory may not have room for a copy."""
     found, rows = hashlib.sha256(), np.atleast_1d(array)
     for first in range(0, len(rows), PIECE):
         found.update(rows[first : first + PIECE].tobytes())

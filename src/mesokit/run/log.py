@@ -1,42 +1,40 @@
-"""The log of a run: what it tells in time, on the screen and in a file."""
+"""The log of a run: numbers in time, on the screen and in a file."""
 
-from __future__ import annotations
-
+import itertools
 import math
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesokit.case.case import Case
 from mesokit.io.log_file import DamagedLog, LogFile
 from mesokit.report.log_lines import ERROR, LogLines
 from mesokit.run.callbacks import Callback
 from mesokit.seam.method import method_of
 from mesokit.seam.named import find
 
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-
 
 class RunLog:
-    """Writes the columns of the section [log]; of a case without one, nothing.
+    """Writes the columns of the section [log], if the case has one.
 
-    A run calls it as it calls functions of the user (`callbacks`). `tell` prints a line on the
-    screen.
+    A run calls it like functions of the user (`callbacks`). `tell` prints a line on the screen.
     """
 
     def __init__(self, case: Case) -> None:
         self.every = case.log.every if case.log else 0
         self.known = method_of(case).log(case)
         self.columns = (case.log.columns or self.known.usual) if case.log else ()
-        self.names = ["step", "time", *self._names()]
+        known = self.known.names  # columns of observables are followed by their errors
+        names = ([name] if name in known else [name, f"{name}{ERROR}"] for name in self.columns)
+        self.names = ["step", "time", *itertools.chain(*names)]
         self.lines = LogLines(self.names)
         self.file: LogFile | None = None
         self.tell: Callable[[str], Any] = lambda text: None
-        self.doubts: set[str] = set()  # columns of which was said that they cannot be found
+        self.doubts: set[str] = set()  # columns whose absence was reported
 
     def callbacks(self) -> list[Callback]:
-        """How the run is to call it."""
+        """The callback of the run, if any."""
         return [Callback(self.every, self)] if self.every else []
 
     def write_to(self, path: Path) -> None:
@@ -50,9 +48,9 @@ class RunLog:
         try:
             self.file.cut(step)
         except DamagedLog as error:
-            kept = self.file.set_aside()
-            told = f"{error}; kept as {kept.name}, a new log begins at step {step}"
-            warnings.warn(told, stacklevel=3)
+            kept = self.file.set_aside().name
+            text = f"{error}; kept as {kept}, a new log begins at step {step}"
+            warnings.warn(text, stacklevel=3)
 
     def sync(self) -> None:
         """Make the lines so far as safe as a checkpoint. Raises RunError."""
@@ -60,18 +58,12 @@ class RunLog:
             self.file.sync()
 
     def __call__(self, simulation: Any) -> None:
-        """Tell how it is now."""
+        """Write and print the present numbers."""
         row = [simulation.step, simulation.time, *self._numbers(simulation)]
         if self.file is not None:
             self.file.append(row)
         for line in self.lines.next(row):
             self.tell(line)
-
-    def _names(self) -> Iterator[str]:
-        for column in self.columns:
-            yield column
-            if column not in self.known.names:
-                yield f"{column}{ERROR}"
 
     def _numbers(self, simulation: Any) -> Iterator[float]:
         own = [column for column in self.columns if column in self.known.names]
@@ -83,7 +75,7 @@ class RunLog:
                 yield from self._compared(simulation, column)
 
     def _compared(self, simulation: Any, column: str) -> tuple[float, float]:
-        """What an observable has found so far, and its error; nan as long as it has nothing."""
+        """Number and error of an observable so far; nan while it has none."""
         label, _, name = column.partition(".")
         result = simulation[label]
         try:

@@ -1,36 +1,37 @@
-"""The loop of a run: from one meeting to the next, and what is done there."""
+"""The loop of a run: from one meeting of replicas and ranks to the next."""
 
 from __future__ import annotations
 
+import contextlib
 import signal
-from collections.abc import Callable, Sequence
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 from mesokit.case.kind import note_run
-from mesokit.processes.order import Coming, Order
+from mesokit.case.run import Run
+from mesokit.kernels.kept import counts
+from mesokit.processes.alone import Coming, Order
 from mesokit.processes.signals import Stopped
+from mesokit.processes.world import World
 from mesokit.report.progress import Reporter
-from mesokit.run.compiling import swallowed, telling
+from mesokit.run.callbacks import Callbacks
+from mesokit.run.folder import Folder
+from mesokit.run.replicas import Replicas
 from mesokit.run.schedule import Leg, Schedule
+from mesokit.run.stop import Stop
 from mesokit.seam.engine import Interrupted
 
-if TYPE_CHECKING:
-    from mesokit.case.run import Run
-    from mesokit.processes.world import World
-    from mesokit.run.callbacks import Callbacks
-    from mesokit.run.folder import Folder
-    from mesokit.run.replicas import Replicas
-    from mesokit.run.stop import Stop
-
+SILENT = 0.7  # seconds of compiling without a message
 CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
 
 
 class Loop:
     """Steps, samples, frames, callbacks and checkpoints, each when it is due.
 
-    `schedule` and `folder` (None where nothing is written) may be replaced while it goes on, by a
-    callback; `call` calls the callbacks that are due.
+    A callback may replace `schedule` and `folder` (None if nothing is written) during the run;
+    `call` calls the callbacks that are due.
     """
 
     def __init__(
@@ -47,33 +48,28 @@ class Loop:
         self.folder: Folder | None = None
 
     def tell(self, last: int, progress: Reporter) -> None:
-        """Tell that the run is going on to a step."""
+        """Report that the run goes on to a step."""
         particles = sum(group.number for group in self.schedule.case.groups)
         progress.start(last, particles, "running", self.replicas.step)
 
     def compile(self, progress: Reporter) -> None:
-        """Load or compile the kernels; say so if it takes long. A signal ends it at once.
+        """Load or compile the kernels, with a message if it takes long. A signal ends it at once.
 
-        Rank 0 does so first, and the others find what it has kept.
+        Rank 0 does so first and keeps them for the other ranks.
         """
         engine = self.replicas.first.engine
-        with (
-            self.stop.at_once(engine.step),
-            telling(progress.compiling),
-            swallowed(Stopped),
-        ):
+        with self.stop.at_once(engine.step), telling(progress.compiling), swallowed(Stopped):
             self.ranks.on_root(lambda: engine.advance(0))
             engine.advance(0)
         note_run(self.schedule.case)
 
     # Between two meetings replicas and ranks do their steps without waiting for one another. At a
-    # meeting they do something together: a frame, a callback, a checkpoint; or they
-    # receive signals and move the progress bar. Rank 0 decides where the next one is, by
-    # its clock and by the signals that it knows of. It does so before the steps to this one, and
-    # not after them, so that the other ranks have been told by the time they arrive here. A signal
-    # may then come one meeting late, but no step waits for a message.
+    # meeting they write a frame, call a callback or write a checkpoint; or they receive signals and
+    # move the progress bar. Rank 0 decides at which step the next meeting is, by its clock and the
+    # signals received. It sends this before the steps to the present meeting, so the message has
+    # arrived when the other ranks need it. A signal may act one meeting late, but no step waits.
     def run(self, last: int, progress: Reporter) -> None:
-        """Go on to a step, unless something stops the run before; keep what is not its end."""
+        """Go on to a step, unless the run stops before; write a checkpoint before its end."""
         if self.replicas.step == self.schedule.warmup and not self.replicas.looked:
             self._go([self.schedule.leg(0, self.schedule.warmup)])
         self.callbacks.stopped = None
@@ -101,7 +97,7 @@ class Loop:
             self.folder.checkpoint(self.replicas)
 
     def _ahead(self, pace: Pace, step: int, last: int) -> Coming:
-        """What is to be done from a step on."""
+        """Send or receive the order for the time after a step."""
 
         def decide(stop: int) -> Order:
             stops = self.schedule.next_meeting(step), *self.callbacks.next_stops(step)
@@ -110,19 +106,19 @@ class Loop:
         return self.ranks.ahead(decide, self.stop.number)
 
     def _go(self, legs: Sequence[Leg]) -> None:
-        """Do steps and take samples, and the frame that is due then."""
+        """Do steps, take samples, and write a frame that is due then."""
         self.replicas.go(legs)
         if self.folder is not None and self.schedule.frame_due(self.replicas.step):
             self.folder.record(self.replicas.first.engine)
 
     def _call_back(self) -> None:
-        """Let callbacks look, if one is due; one that stops the run on any rank stops all."""
+        """Call callbacks that are due; one that stops the run on any rank stops all ranks."""
         if self.callbacks.due(self.replicas.step):
             reasons = self.ranks.answers(self.call)
             self.callbacks.stopped = next((one for one in reasons if one is not None), None)
 
     def _keep_if_due(self, order: Order, pace: Pace) -> None:
-        """Write the checkpoint that is due by the clock or by steps; a stop writes its own."""
+        """Write a checkpoint that is due by the clock or by steps; a stop writes another one."""
         if self.folder is None or self.stop.due:
             return
         if order.save or self.schedule.checkpoint_due(self.replicas.step):
@@ -138,7 +134,7 @@ class Pace:
         self.kept()
 
     def went(self, steps: int, seconds: float) -> None:
-        """So many steps took so many seconds."""
+        """Choose the next number of steps from the seconds of these steps."""
         self.chunk = next_chunk(steps, seconds)
 
     def kept(self) -> None:
@@ -146,7 +142,7 @@ class Pace:
         self.last = perf_counter()
 
     def save(self) -> bool:
-        """Whether a checkpoint is due; then the caller writes one, and the interval restarts."""
+        """True if a checkpoint is due; the interval restarts, and the caller must write it."""
         due = perf_counter() - self.last > self.seconds
         if due:
             self.kept()
@@ -154,9 +150,50 @@ class Pace:
 
 
 def next_chunk(steps: int, seconds: float) -> int:
-    """So many steps that the next call takes CALL_SECONDS, growing at most fourfold at a time.
+    """The number of steps for a call of CALL_SECONDS, at most four times the present number.
 
     >>> next_chunk(10, 0.1), next_chunk(10, 0.001), next_chunk(10, 9.0)
     (20, 40, 1)
     """
     return max(1, min(4 * steps, int(steps * CALL_SECONDS / max(seconds, 1e-9))))
+
+
+@contextlib.contextmanager
+def telling(tell: Callable[[str], None]) -> Iterator[None]:
+    """Call `tell` with the present activity, if it takes long, and again when it changes."""
+    done = threading.Event()
+    made, parts, kernels = counts.parts_made, counts.parts_found, counts.kernels_found
+
+    def doing() -> str:
+        if counts.parts_made > made or counts.compiles_ahead:
+            return "compiling (once; kept for the next runs)"
+        if counts.parts_found > parts:
+            return "compiling from parts that are kept (once)"
+        if counts.kernels_found > kernels:
+            return "loading kernels"
+        return "loading kernels, or waiting for another process that compiles them"
+
+    def look() -> None:
+        last = ""
+        while not done.wait(SILENT):
+            if (words := doing()) != last:
+                tell(words)
+            last = words
+
+    threading.Thread(target=look, daemon=True).start()
+    try:
+        yield
+    finally:
+        done.set()
+
+
+@contextlib.contextmanager
+def swallowed(kind: type[BaseException]) -> Iterator[None]:
+    """Do not print exceptions of a kind that Python drops because C code, such as the compiler,
+    cannot pass them on."""
+    earlier = sys.unraisablehook
+    sys.unraisablehook = lambda told: None if isinstance(told.exc_value, kind) else earlier(told)
+    try:
+        yield
+    finally:
+        sys.unraisablehook = earlier

@@ -1,4 +1,4 @@
-"""Open what a run has written."""
+"""Files of a run: results, trajectory, log and record."""
 
 from __future__ import annotations
 
@@ -11,34 +11,33 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from mesokit.case import toml
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.describe.shown import Shown
 from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint, h5md, log_file, tables
 from mesokit.io.frames import require_frames, seen_until
 from mesokit.io.measured import fitting, measured
-from mesokit.io.pooled import merge_again, pooled_words
+from mesokit.io.record_words import merge_again, pooled_words, work_words
 from mesokit.io.run_directory import RunDirectory
-from mesokit.io.shared_work import work_words
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.observe.shared.build_up import result_of
 from mesokit.run import pictures
 from mesokit.seam.in_units import in_units
 from mesokit.seam.method import method_of
 from mesokit.seam.named import keyed
+from mesokit.seam.result import Comparison, Result
 
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
+if TYPE_CHECKING:  # it loads the libraries of pictures
     from mesokit.report.flow import Film
-    from mesokit.seam.result import Comparison, Result
 
 
-class RunFiles(Shown, Mapping[str, "Result"]):
-    """What a run has written, read when asked for: a mapping of its results by name.
+class RunFiles(Shown, Mapping[str, Result]):
+    """Files of a run, read when they are needed: a mapping of its results by name.
 
     `files["velocity-profile"]` is a result, `list(files)` their names; `case`, `provenance`,
-    `results`, `trajectory`, `log` and `si` are the rest. Raises RunError where a file is missing
-    or damaged.
+    `results`, `trajectory`, `log` and `si` are the rest. Raises RunError if a file is missing or
+    damaged.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -48,8 +47,6 @@ class RunFiles(Shown, Mapping[str, "Result"]):
     @cached_property
     def case(self) -> Case:
         """The resolved case."""
-        from mesokit.case.case import Case
-
         return Case.from_toml(self.directory.case_file)
 
     @cached_property
@@ -59,7 +56,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
     @property
     def pooled(self) -> str:
-        """From how many runs and which seeds it was merged, nothing if it is a run itself."""
+        """Number and seeds of the merged runs, "" for a run that is not merged."""
         with contextlib.suppress(RunError):  # results can be read without the record
             return pooled_words(self.provenance)
         return ""
@@ -86,7 +83,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
     @cached_property
     def si(self) -> Any:
-        """What the numbers are in SI units. Raises CaseError for a case without `units`."""
+        """The numbers in SI units. Raises CaseError for a case without `units`."""
         convert = method_of(self.case).si
         if convert is None:
             raise CaseError(f"units: method {show(self.case.run.method)} does not know them in SI")
@@ -111,24 +108,21 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         return reader if reader.fields else None
 
     def __getitem__(self, name: str) -> Result:
-        """The result of that name; KeyError says which there are."""
+        """The result of that name; KeyError lists the names."""
         if name not in self.results:
             raise KeyError(f"no result {name!r}; there are {', '.join(self.results) or 'none'}")
         return self.results[name]
 
     def __iter__(self) -> Iterator[str]:
-        """Names of the results."""
         return iter(self.results)
 
     def __len__(self) -> int:
-        """Number of results."""
         return len(self.results)
 
     def __bool__(self) -> bool:
-        """There is a run, whether it has results or not."""
-        return True
+        return True  # also without results
 
-    __eq__ = object.__eq__  # two runs are not equal because their results are
+    __eq__ = object.__eq__  # equal results do not make runs equal
     __hash__ = object.__hash__
 
     def comparisons(self) -> dict[str, Comparison]:
@@ -151,7 +145,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         return tables.write_rows(self.results, path)
 
     def record(self) -> dict[str, Any]:
-        """What `mesokit info --json` prints: plain numbers and texts."""
+        """The record that `mesokit info --json` prints: plain numbers and texts."""
         results = self.so_far()
         return {
             "run": str(self.path),
@@ -161,13 +155,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
             "case": toml.parse(self.case.to_toml()),
             "provenance": self.provenance,
             "results": [
-                {
-                    "name": r.name,
-                    "quantity": r.quantity,
-                    "label": r.label,
-                    "samples": r.samples,
-                    "shape": {key: len(axis) for key, axis in r.x.items()},
-                }
+                {name: getattr(r, name) for name in ("name", "quantity", "label", "samples")}
+                | {"shape": {key: len(axis) for key, axis in r.x.items()}}
                 for r in results.values()
             ],
             "comparisons": tables.rows(results),
@@ -175,10 +164,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
     @property
     def ended(self) -> bool:
-        """Whether the run has come to its end, and has results.
-
-        A case that was made longer since has not.
-        """
+        """True if the run has ended and has results, and its case was not made longer since."""
         if not self.directory.data_file.exists():
             return False
         with contextlib.suppress(RunError):  # results outlive a checkpoint
@@ -197,11 +183,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         return write_report(self, path, films)
 
     def plot(
-        self,
-        folder: str | Path | None = None,
-        *,
-        ending: str = ".png",
-        width: float | None = None,
+        self, folder: str | Path | None = None, *, ending: str = ".png", width: float | None = None
     ) -> list[Path]:
         """Draw every result into the folder (that of the run unless said).
 
@@ -213,7 +195,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         return save_all(*own, ending=ending, width=width, run=self._name)
 
     def flow(self, kind: str | None = None, **choices: Any) -> Any:
-        """A picture of the flow; `mesokit.report.flow.picture` says what may be chosen.
+        """A picture of the flow, with the choices of `mesokit.report.flow.picture`.
 
         `files.flow("speed", region=((0, 20), (0, 10)), window=(50, 90))` is a Matplotlib figure;
         `width` is that of the figure, in inches.
@@ -230,14 +212,14 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
     @property
     def _name(self) -> str:
-        """What pictures call the run: its folder."""
+        """The name of the run in pictures: its folder."""
         return self.path.resolve().name
 
     def universe(self) -> Any:
         """The trajectory as an MDAnalysis `Universe`, with kinds, masses, molecules and bonds.
 
         All frames are in memory; a cell is an angstrom there, and a unit of time a picosecond.
-        Raises CaseError where MDAnalysis is not installed, RunError where there are no frames.
+        Raises CaseError without MDAnalysis, RunError without frames.
         """
         from mesokit.io.export import contents
         from mesokit.io.mdanalysis import require, universe
@@ -246,11 +228,11 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         return universe(*contents(self.directory, self.case, lambda: self.trajectory))
 
     def export(self, path: str | Path) -> Path:
-        """Write the trajectory for another program; the ending says the format.
+        """Write the trajectory for another program, in the format of the ending.
 
         `.gsd` is for OVITO, HOOMD-blue and MDAnalysis; `.lammpstrj` and `.xyz` are text; `.h5md`,
         `.dcd`, `.xtc` and `.trr` have all frames, `.data` (LAMMPS) the last. Raises CaseError for
-        any other, RunError where there are no frames with positions.
+        any other, RunError without frames with positions.
         """
         from mesokit.io.export import export
 
@@ -263,11 +245,11 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
     @contextlib.contextmanager
     def _advising(self) -> Iterator[None]:
-        """Say what brings back a damaged data file."""
+        """Add to the error of a damaged data file how to restore it."""
         try:
             yield
         except RunError as error:
-            if not self.directory.data_file.exists():  # that error has said it
+            if not self.directory.data_file.exists():  # the error is complete
                 raise
             raise RunError(f"{error}; {self._advice()}") from None
 
@@ -283,9 +265,9 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
     @property
     def state(self) -> str:
-        """How far a run has come that has no results yet, and how to go on."""
+        """State of a run without results, and how to go on."""
         failed, file = None, self.directory.checkpoint_file
-        with contextlib.suppress(RunError):  # to go on, a damaged record does not matter
+        with contextlib.suppress(RunError):  # a run goes on without its record
             failed = self.provenance.get("failed")
         if self.pooled:
             return f"was {self.pooled}, but has no results; {self._advice()}"
@@ -300,32 +282,27 @@ class RunFiles(Shown, Mapping[str, "Result"]):
                 return f"cannot go on: {reached}, but {error}"
         if failed:
             return f"failed: {failed} ({reached})"
-        return (
-            f"has not ended: {reached}; if it is not running any more, go on with: "
-            f"mesokit resume {self.path}"
-        )
+        how = f"if it is not running any more, go on with: mesokit resume {self.path}"
+        return f"has not ended: {reached}; {how}"
 
     def so_far(self) -> dict[str, Result]:
-        """The results, none if there are none yet or what they were in is lost."""
+        """The results, {} if there are none yet or their file is lost."""
         with contextlib.suppress(RunError) if not self.ended else contextlib.nullcontext():
             return self.results
         return {}
 
     def _card(self) -> dict[str, Any]:
         how = self.pooled if self.ended else self.state
-        words = ": ".join(filter(None, [self.case.title, how]))
-        found = self.so_far().values()
-        text = self.case.to_toml()
         return {
             "title": f"mesokit run {self.path}",
-            "words": words,
-            "results": found,
-            "text": text,
+            "words": ": ".join(filter(None, [self.case.title, how])),
+            "results": self.so_far().values(),
+            "text": self.case.to_toml(),
             "fold": "the case",
         }
 
     def _length(self) -> str:
-        """How many steps the run took, the time at its end, and the date."""
+        """Steps of the run, its simulated time, and the date of its end."""
         run = self.case.run
         end = (run.warmup + run.steps) * method_of(self.case).timestep(self.case)
         words = f"{run.steps} step{'s' * (run.steps != 1)}"
@@ -341,12 +318,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         lines += [f"  {self.case.title}"] * bool(self.case.title)
         if self.case.units is not None:
             lines.append("  " + str(self.si).replace("\n", "\n  "))
-        if not self.ended:
-            lines.append(f"  {self.state}")
-        elif self.pooled:
-            lines.append(f"  {self.pooled}")
-        else:
-            lines.append(f"  {self._length()}")
+        lines.append(f"  {(self.pooled or self._length()) if self.ended else self.state}")
         with contextlib.suppress(RunError):  # results can be read without the record
             if lost := self.directory.record_lost:
                 lines.append(f"  warning: {lost}")
@@ -359,13 +331,11 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
 
 def open(path: str | Path) -> RunFiles:
-    """What the run in the folder `path` has written. Raises RunError if there is no run.
+    """Files of the run in the folder `path`. Raises RunError if there is no run.
 
     Several runs of the same case become one by `mesokit.merge`.
     """
     if not isinstance(path, str | Path):
-        raise RunError(
-            f"open({show(path)}): expected the folder of one run; mesokit.merge(runs, output) "
-            "makes one of several of the same case"
-        )
+        hint = "mesokit.merge(runs, output) makes one of several of the same case"
+        raise RunError(f"open({show(path)}): expected the folder of one run; {hint}")
     return RunFiles(path)

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mesokit.case.case import Case
 from mesokit.case.component import require_known
+from mesokit.seam.result import Result
 
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
+if TYPE_CHECKING:  # it loads the libraries of pictures
     from mesokit.report.flow import Film
-    from mesokit.seam.result import Result
 
 
 def flow(
@@ -22,8 +22,8 @@ def flow(
     kind: str | None,
     choices: dict[str, Any],
 ) -> Any:
-    """A picture of a run of this name; `mesokit.report.flow.picture` says what the rest is, and
-    `width` among the choices is that of the figure."""
+    """A picture of a run of this name, with the choices of `mesokit.report.flow.picture` and the
+    `width` of the figure."""
     from mesokit.report.finish.origin import origin_of
     from mesokit.report.flow import CHOICES, page_width, picture
 
@@ -43,7 +43,7 @@ def film(
     choices: dict[str, Any],
     path: str | Path,
 ) -> Film:
-    """Write a film of it; `mesokit.report.flow.animate` says what the rest is."""
+    """Write a film of it, with the choices of `mesokit.report.flow.animate`."""
     from mesokit.report.flow import CHOICES, animate
 
     require_known(choices, [*CHOICES, "fps", "progress"])

@@ -1,26 +1,22 @@
-"""Independent copies of a case that run side by side, each from a seed of its own."""
-
-from __future__ import annotations
+"""Independent copies of a case that run side by side, each with its own seed."""
 
 import copy
 import dataclasses
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.observe.shared.build_up import result_of
+from mesokit.run.schedule import Leg
 from mesokit.seam.method import method_of
+from mesokit.seam.observable import Accumulator
 from mesokit.seam.pooled import pool
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.run.schedule import Leg
-    from mesokit.seam.observable import Accumulator
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Result
 
 ALIKE = (
     "run.replicas: the first two move alike: neither their start nor what moves them knows of the "
@@ -29,7 +25,7 @@ ALIKE = (
 
 
 class Replica:
-    """One copy: its case, which has a seed of its own, its engine and what it has measured."""
+    """One copy: its case with its own seed, its engine and its accumulators."""
 
     def __init__(self, case: Case, threads: int) -> None:
         measures = {name for observable in case.observe for name in observable.measures}
@@ -38,7 +34,7 @@ class Replica:
         self.accumulators: dict[str, Accumulator] = {
             observable.label: observable.accumulator(case) for observable in case.observe
         }
-        self.seconds = dict.fromkeys(self.accumulators, 0.0)  # that samples have taken
+        self.seconds = dict.fromkeys(self.accumulators, 0.0)  # spent on samples
 
     def go(self, legs: Iterable[Leg]) -> None:
         """Do steps and take samples."""
@@ -54,10 +50,10 @@ class Replica:
 
 
 class Replicas:
-    """All copies of a case: the same steps at the same time, each on one thread or some.
+    """All copies of a case, which do the same steps at the same time on one or more threads each.
 
-    Which of them a thread takes changes no bit. What they have measured is pooled: blocks of time
-    of all stand in a row, so that error bars see how copies scatter.
+    Bits do not depend on the threads. Results are pooled: blocks of time of all copies stand in a
+    row, so error bars contain the scatter of copies.
     """
 
     def __init__(self, case: Case, threads: int) -> None:
@@ -65,20 +61,20 @@ class Replicas:
         each = max(1, threads // number)
         self.all = [Replica(one, each) for one in copies(case)]
         self.workers = ThreadPoolExecutor(min(number, threads)) if number > 1 else None
-        self.looked = False  # whether the state that the run begins with has been sampled
+        self.looked = False  # true once the first state of the run has been sampled
 
     @property
     def first(self) -> Replica:
-        """The one whose frames and log are written."""
+        """The replica whose frames and log are written."""
         return self.all[0]
 
     @property
     def step(self) -> int:
-        """The step at which all of them are."""
+        """The step of all replicas."""
         return self.first.engine.step
 
     def each(self, work: Callable[[Replica], Any]) -> None:
-        """Do something with each of them. Raises the first of their errors, with its seed."""
+        """Call a function of each replica. Raises the first of their errors, with its seed."""
         if self.workers is None:
             return work(self.first)
         done = [self.workers.submit(work, one) for one in self.all]
@@ -89,18 +85,18 @@ class Replicas:
                 raise RunError(f"replica of seed {one.case.run.seed}: {error}") from None
 
     def start(self, arrays: Mapping[str, Any]) -> None:
-        """Put the particles of each where they start from."""
+        """Place the particles of each replica in its first state."""
         for one in self.all:
             method = method_of(one.case)
             method.initial.fill(one.engine, method.initial.read(one.case, arrays))
 
     def go(self, legs: Iterable[Leg]) -> None:
-        """Steps and samples of all: they wait for one another at the end alone."""
+        """Do steps and samples of all replicas, which wait for one another at the end only."""
         self.each(lambda one: one.go(legs))
         self.looked = self.step >= self.first.case.run.warmup
 
     def check(self) -> None:
-        """Raise RunError for numbers that are none, and for copies that are the same run twice."""
+        """Raise RunError for numbers that are not finite, and for two copies that are equal."""
         self.each(lambda one: one.engine.check())
         if len(self.all) > 1:
             one, two = (copy.engine.state() for copy in self.all[:2])
@@ -108,7 +104,7 @@ class Replicas:
                 raise RunError(ALIKE)
 
     def result(self, name: str) -> Result:
-        """What all of them say of an observable."""
+        """The pooled result of an observable."""
         pooled = self.first.accumulators[name]
         if len(self.all) > 1:
             pooled = copy.deepcopy(pooled)

@@ -1,18 +1,14 @@
-"""At which steps of a run something is due."""
+"""Steps of a run at which samples, frames and checkpoints are due."""
 
-from __future__ import annotations
+from typing import NamedTuple
 
-from typing import TYPE_CHECKING, NamedTuple
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.observable import Observable
+from mesokit.case.case import Case
+from mesokit.seam.observable import Observable
 
 
 class Leg(NamedTuple):
-    """So many steps, what the last of them measures (`Observable.measures`), and what is done after
-    it: what was counted is forgotten where the warm-up ends, and samples are taken by observables
-    of these names."""
+    """Steps without a pause. The last one measures `measure` (`Observable.measures`). After it the
+    warm-up may end, which resets counters, and observables of the names in `samples` sample."""
 
     steps: int
     measure: frozenset[str]
@@ -21,10 +17,10 @@ class Leg(NamedTuple):
 
 
 class Schedule:
-    """When a case samples, writes frames and checkpoints, by the step.
+    """Steps at which a case samples, and writes frames and checkpoints.
 
-    What is due every n steps is due first where the warm-up ends: the state that the run begins
-    with is part of it. Only what is summed up during steps, such as stress, is not yet there then.
+    Samples every n steps begin at the end of the warm-up, with the state there. Only observables of
+    sums over steps, such as stress, begin n steps later.
 
     >>> from mesokit import Box, Case, Conservation, Run
     >>> run = Run(steps=20, warmup=5)
@@ -46,8 +42,8 @@ class Schedule:
         return min([self.next_meeting(step), *self._after(step, intervals)])
 
     def next_meeting(self, step: int) -> int:
-        """The next step at which something is due that replicas do together: a frame, a checkpoint,
-        the end of the warm-up or of the run."""
+        """The next step at which replicas wait for one another: a frame, a checkpoint, the end of
+        the warm-up or of the run."""
         run, trajectory = self.case.run, self.case.trajectory
         stops = [self.warmup if step < self.warmup else self.last_step]
         if trajectory is not None and step >= self.warmup:
@@ -61,8 +57,7 @@ class Schedule:
         return [step + every - passed % every for every in intervals]
 
     def legs(self, step: int, target: int) -> list[Leg]:
-        """The way from a step to another one that is no farther than the next meeting, from one
-        sample to the next."""
+        """Legs between samples, from a step to a target no later than the next meeting."""
         found = []
         while step < target:
             end = min(self.next_stop(step), target)
@@ -71,7 +66,7 @@ class Schedule:
         return found
 
     def leg(self, steps: int, end: int) -> Leg:
-        """So many steps that end at this one."""
+        """The leg of so many steps that ends at step `end`."""
         due = self.due(end)
         measure = frozenset(name for observable in due for name in observable.measures)
         return Leg(steps, measure, end == self.warmup, tuple(one.label for one in due))
@@ -86,11 +81,11 @@ class Schedule:
         ]
 
     def frame_due(self, step: int) -> bool:
-        """Whether a frame of the trajectory is written at this step."""
+        """True if a frame of the trajectory is written at this step."""
         trajectory, passed = self.case.trajectory, step - self.warmup
         return trajectory is not None and passed >= 0 and passed % trajectory.every == 0
 
     def checkpoint_due(self, step: int) -> bool:
-        """Whether a checkpoint is written at this step, whenever the last one was."""
+        """True if a checkpoint is written at this step, independently of the clock."""
         every = self.case.run.checkpoint_every
         return every is not None and step % every == 0

@@ -1,4 +1,4 @@
-"""A simulation: build it, run it, resume it, look at what it measured."""
+"""A simulation: a case in memory that can be run and resumed, and its results."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import contextlib
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesokit.case import toml
 from mesokit.case.case import Case
@@ -15,10 +15,11 @@ from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import blaming
 from mesokit.errors import RunError
 from mesokit.io.one_writer import alone
+from mesokit.io.record_words import shared_work
 from mesokit.io.run_directory import RunDirectory
-from mesokit.io.shared_work import shared_work
 from mesokit.processes.world import world
 from mesokit.report.document.progress import reporter_for
+from mesokit.report.flow import Film
 from mesokit.report.progress import Reporter
 from mesokit.run import pictures
 from mesokit.run.callbacks import Callback, Callbacks
@@ -31,10 +32,7 @@ from mesokit.run.schedule import Schedule
 from mesokit.run.stop import Stop
 from mesokit.run.until import Goal, limit_of, longer, next_length, require_steps
 from mesokit.seam.method import method_of
-
-if TYPE_CHECKING:
-    from mesokit.report.flow import Film
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Result
 
 
 class Simulation(Shown):
@@ -96,8 +94,7 @@ class Simulation(Shown):
                 self.checkpoint()
 
     def _build(self) -> None:
-        """Make the parts of a simulation: replicas, callbacks, stop, loop, and its folder if it has
-        one."""
+        """Make replicas, callbacks, stop and loop."""
         require_ranks(self.case, self.ranks.size)
         self.replicas = Replicas(self.case, self.threads)
         self.engine = self.replicas.first.engine
@@ -116,7 +113,7 @@ class Simulation(Shown):
         self._write_in(directory).begin(self.threads)
 
     def _write_in(self, directory: RunDirectory) -> Folder:
-        """The folder, which the loop writes to as well from now on."""
+        """Let the loop write to a folder from now on."""
         self._folder = self._loop.folder = Folder(directory, self.case, self.ranks, self.log)
         return self._folder
 
@@ -130,13 +127,13 @@ class Simulation(Shown):
     ) -> Simulation:
         """Go on with the run in a folder, from its last checkpoint (or the start, if none).
 
-        With `steps` it lasts so many after its warm-up, and what has ended goes on, to the bits of
-        a run that was as long from the start; the case on record says so. Callbacks are not kept
-        with a run: name them again.
+        With `steps` it lasts so many after its warm-up, also if it had ended, to the bits of a run
+        that was as long from the start; the case on record is changed. Callbacks are not kept with
+        a run: name them again. A damaged record is a warning, and begun anew.
 
         Raises CaseError if it has done more steps than that.
         Raises RunError, CheckpointError if there is none, it is damaged, or another process is
-        writing there. A damaged record of where the run comes from is a warning, and begun anew.
+        writing there.
         """
         here = world()
         here.require_same(lambda: {"output": str(output)})
@@ -173,7 +170,7 @@ class Simulation(Shown):
         return self.engine.time
 
     def __getitem__(self, name: str) -> Result:
-        """What an observable says so far."""
+        """The result of an observable so far."""
         if name not in self.accumulators:
             known = ", ".join(self.accumulators) or "none"
             raise KeyError(f"no observable {name!r}; there are {known}")
@@ -181,7 +178,7 @@ class Simulation(Shown):
 
     @property
     def results(self) -> dict[str, Result]:
-        """What all observables say so far, by name."""
+        """The results of all observables so far, by name."""
         return {name: self.replicas.result(name) for name in self.accumulators}
 
     # --- running --------------------------------------------------------------------------------
@@ -195,15 +192,15 @@ class Simulation(Shown):
     ) -> None:
         """Run to the end of the case, or so many steps on; at the end write results and figures.
 
-        Where `steps` lead beyond the end of the case, the case becomes longer, also on record: the
+        If `steps` lead beyond the end of the case, the case becomes longer, also on record: the
         bits are those of a case that was as long from the start. With `until`, such as
         "velocity-profile.viscosity=1%", it becomes longer until the standard error of that number
         is so small, by `steps` at most (100 times its length unless said); if that is not enough,
         there is a warning.
 
-        `progress=True` tells how it goes: a bar in a notebook or a terminal, else a line every few
-        seconds; False says nothing. Unless said, notebooks alone show a bar. A
-        `mesokit.report.progress.Reporter` of one's own may write to another stream.
+        `progress=True` shows a bar in a notebook or a terminal, else a line every few seconds;
+        False shows nothing, and the default a bar in notebooks alone. Another
+        `mesokit.report.progress.Reporter` may write to another stream.
 
         A callback that raises `StopRun` ends it early, with a checkpoint where there is a folder.
         Ctrl-C, SIGTERM, SIGHUP or SIGUSR1 raises KeyboardInterrupt after the steps in hand, with a
@@ -216,16 +213,15 @@ class Simulation(Shown):
             self._run(steps, until, reporter_for(progress) if self.ranks.root else silent)
 
     def _run(self, steps: int | None, until: str | None, progress: Reporter) -> None:
-        """Run to the end: there are then results, an error on record, or a checkpoint and a
-        KeyboardInterrupt."""
+        """Run to results, to an error on record, or to a checkpoint and a KeyboardInterrupt."""
         looked, warmup = self.replicas.looked, self.case.run.warmup
         goal = None if until is None else Goal.parse(until, self.case)
         if goal is not None and looked:
             result = self[goal.observable]
             if self.step == self.last_step or result.comparisons:
-                goal.found(result)  # or there is no such number, and never will be
-        # Steps asked for are counted from here, those of a case from the end of its warm-up. They
-        # are the way to go, and may end before the case does; of a goal they are the most there is.
+                goal.found(result)  # raises an error if there is no such number
+        # `steps` are counted from here, those of a case from the end of its warm-up. The run may
+        # end before the case does; with a goal they are a limit.
         limit = None if steps is None else self.step + require_steps(steps) - warmup
         last = self.last_step
         if limit is not None and goal is None:
@@ -278,7 +274,7 @@ class Simulation(Shown):
             self._loop.run(self.last_step, progress)
 
     def _end(self) -> None:
-        """Refuse numbers that are none; write results where there is a folder."""
+        """Check that numbers are finite, and write results if there is a folder."""
         self.replicas.check()
         if self._folder is not None:
             self.checkpoint()
@@ -286,7 +282,7 @@ class Simulation(Shown):
             self._folder.end(self.results, {"timings": self.timings, "shared_work": work})
 
     def reached(self, until: str) -> bool:
-        """Whether a number is known as well now as `run(until=...)` asks. Raises CaseError."""
+        """True if a number is known as well as `run(until=...)` needs. Raises CaseError."""
         goal = Goal.parse(until, self.case)
         return goal.excess(self[goal.observable]) <= 1
 
@@ -338,10 +334,10 @@ class Simulation(Shown):
         }
 
     def flow(self, kind: str | None = None, **choices: Any) -> Any:
-        """A picture of the flow so far; `mesokit.report.flow.picture` says what may be chosen.
+        """A picture of the flow so far, with the choices of `mesokit.report.flow.picture`.
 
         `simulation.flow("particles")` works before the first step, too: it shows the solids, the
-        molecules and where the particles are.
+        molecules and the particles.
         """
         from mesokit.report.flow import State
 
@@ -350,7 +346,7 @@ class Simulation(Shown):
 
     @property
     def _name(self) -> str:
-        """What pictures call it: the folder, if there is one."""
+        """Its name in pictures: the folder, if there is one."""
         return "" if self.directory is None else self.directory.path.resolve().name
 
     def animate(self, path: str | Path, kind: str | None = None, **choices: Any) -> Film:

@@ -1,44 +1,37 @@
-"""How a run comes to stop before its end: a signal to any of its processes, or a callback."""
-
-from __future__ import annotations
+"""Stop of a run before its end, by a signal to any of its processes or by a callback."""
 
 import contextlib
 import signal
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from mesokit.processes.signals import Stopped, catching
-
-if TYPE_CHECKING:
-    from mesokit.processes.world import World
-    from mesokit.run.callbacks import Callbacks
+from mesokit.processes.world import World
+from mesokit.run.callbacks import Callbacks
 
 
 class Stop:
-    """Whether a run is to stop, and by what.
+    """State of the stop of a run.
 
-    A signal is first `heard` by the rank that it comes to, which tells rank 0. All ranks then stop
-    `by` it at the same step, the end of the steps in hand. Why a callback has stopped the run, the
-    callbacks know (`stopped`).
+    A signal is first `heard` on the rank to which it comes, which sends it to rank 0. All ranks
+    then stop `by` it at the same step. `callbacks.stopped` has the reason of a callback.
     """
 
     def __init__(self, ranks: World, callbacks: Callbacks) -> None:
         self.ranks, self.callbacks = ranks, callbacks
         self.heard: signal.Signals | None = None
         self.by: signal.Signals | None = None
-        self.compiling: int | None = None  # the step at which that is done, if it is
+        self.compiling: int | None = None  # the present step while kernels are compiled
 
     @contextlib.contextmanager
     def listening(self) -> Iterator[None]:
-        """Signals stop the run meanwhile; those that came before do not matter any more."""
+        """Let signals stop the run meanwhile; earlier signals do not matter."""
         self.heard = self.by = None
         self.ranks.begin()
         with catching(self._hear):
             yield
 
     def _hear(self, by: signal.Signals) -> None:
-        """The first waits for the end of the steps in hand, where there are any; a second stops at
-        once."""
+        """The first signal stops the run after the present steps, a second one at once."""
         if self.heard is not None:
             raise Stopped(by)
         self.heard = by
@@ -52,27 +45,27 @@ class Stop:
 
     @property
     def due(self) -> bool:
-        """Whether all ranks know that the run is to stop now."""
+        """True if all ranks are to stop now."""
         return self.by is not None or self.callbacks.stopped is not None
 
     def agree(self) -> None:
-        """Let all ranks know of a signal that rank 0 knows of."""
+        """Send a signal that rank 0 has received to all ranks."""
         heard = self.ranks.heard(self.number())
         by = self.ranks.on_root(lambda: heard)
         self.by = signal.Signals(by) if by else None
 
     def error(self, step: int) -> Stopped:
-        """Where the run was stopped, and by which signal."""
+        """The step and the signal by which the run was stopped."""
         assert self.by is not None
         doing = ", while compiling," if self.compiling is not None else ""
         return Stopped(self.by, f"stopped at step {step}{doing} by {self.by.name}")
 
     @contextlib.contextmanager
     def at_once(self, step: int) -> Iterator[None]:
-        """Kernels are compiled meanwhile, at this step: the first signal ends that at once.
+        """Let the first signal stop the run at once while kernels are compiled.
 
-        The compiler calls back into Python, which drops what a signal raises there. It then goes
-        on, or fails with a RuntimeError about what is left of a kernel: so we look afterwards.
+        Python drops an exception of a signal handler that is called from the compiler. The compiler
+        then goes on, or fails with a RuntimeError about an unfinished kernel. So we check again.
         """
         self.compiling = step
         try:

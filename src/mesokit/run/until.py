@@ -5,16 +5,13 @@ from __future__ import annotations
 import dataclasses
 import math
 import numbers
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
 from mesokit.seam.named import find
-from mesokit.seam.result import Comparison
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.result import Result
+from mesokit.seam.result import Comparison, Result
 
 MOST = 100  # times as long as the case says, unless a limit is given
 SHORTEST, LONGEST = 1.05, 2.0  # factors by which a run is made longer at a time
@@ -22,7 +19,7 @@ FORM = "expected OBSERVABLE.NUMBER=ERROR, such as velocity-profile.viscosity=1% 
 
 
 class Goal(NamedTuple):
-    """The standard error that a compared number of an observable is to have.
+    """The wanted standard error of a compared number of an observable.
 
     `error` is a share of the number if `relative`, else in its unit.
     """
@@ -54,34 +51,34 @@ class Goal(NamedTuple):
         return cls(fits[0], number, error / 100 if relative else error, relative)
 
     def found(self, result: Result) -> Comparison:
-        """The number as it is now. Raises CaseError if the observable has none of that name."""
+        """The present number. Raises CaseError if the observable has none of that name."""
         try:
             return find(result.comparisons, self.number)
         except KeyError as error:
             raise CaseError(f"until {self.observable}: {error.args[0]}") from None
 
     def excess(self, result: Result) -> float:
-        """How many times too large the standard error is now; infinite where it is not known."""
+        """The present standard error over the wanted one; infinite if it is not known."""
         number = self.found(result)
         allowed = self.error * abs(number.measured) if self.relative else self.error
         known = number.error > 0 and math.isfinite(number.error) and allowed > 0
         return number.error / allowed if known else math.inf
 
     def said(self, result: Result) -> str:
-        """How well the number is known now, in words."""
+        """The present standard error in words."""
         number = self.found(result)
+        name = f"{self.observable}: {number.what}"
         if math.isnan(number.measured):
-            return f"{self.observable}: {number.what} is undetermined ({number.note})"
+            return f"{name} is undetermined ({number.note})"
         if self.relative and number.measured:
-            share = 100 * number.error / abs(number.measured)
-            return f"{self.observable}: {number.what} is known to {share:.3g} %"
-        return f"{self.observable}: {number.what} is known to {number.error:.3g} {number.unit}"
+            return f"{name} is known to {100 * number.error / abs(number.measured):.3g} %"
+        return f"{name} is known to {number.error:.3g} {number.unit}"
 
 
 def next_length(excess: float, done: int, every: int, limit: int) -> int:
-    """Steps after the warm-up to go on to, of which so many are done.
+    """New number of steps after the warm-up, of which `done` are done.
 
-    Errors fall with the root of the time, so it takes the excess squared, and 5 % more.
+    Errors fall with the root of the time, so the factor is the excess squared, and 5 % more.
 
     >>> next_length(1.2, done=1000, every=10, limit=10**6), next_length(9.0, 1000, 10, 1500)
     (1520, 1500)

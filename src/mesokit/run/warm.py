@@ -8,11 +8,11 @@ from mesokit.case.case import Case
 from mesokit.kernels.kept import counts
 from mesokit.run.simulation import Simulation
 
-STEPS, EVERY = 8, 4  # steps in which all that a case observes is looked at
+STEPS, EVERY = 8, 4  # steps of the run, and between samples of all observables
 
 
 class Warmed(NamedTuple):
-    """What was made for a case: kernels, parts, seconds, and why each kernel was made."""
+    """Numbers of compiled kernels and parts, seconds, and the reason for each kernel."""
 
     kernels: int
     parts: int
@@ -21,17 +21,15 @@ class Warmed(NamedTuple):
 
 
 def shortened(path: Path, settings: dict[str, str], steps: int = STEPS) -> Case:
-    """The case in a file with few steps, in which every observable looks at each fourth.
+    """The case in a file with few steps; every observable takes a sample at each fourth.
 
-    Frames that average over a window are of one look.
-
-    Raises CaseError.
+    Frames that average over a window have one sample. Raises CaseError.
     """
     plain = Case.from_toml(path, settings)
     every = {
         f"observe.{i + 1}.{key}": EVERY
         for i, one in enumerate(plain.observe)
-        if not getattr(one, "steps", ())  # where steps are named, these are what is looked at
+        if not getattr(one, "steps", ())  # samples at given steps need no other interval
         for key in ("every", "window")
         if getattr(one, key, None)
     }
@@ -39,7 +37,7 @@ def shortened(path: Path, settings: dict[str, str], steps: int = STEPS) -> Case:
 
 
 def warm(path: Path, settings: dict[str, str], why: bool = False) -> Warmed:
-    """Run a few steps of the case in a file, so that all it compiles is kept; `why` finds reasons.
+    """Run a few steps of the case in a file, so that its compiled code is kept; `why` adds reasons.
 
     Raises MesokitError.
     """

@@ -1,4 +1,4 @@
-"""What a study varies: lists, ranges, and keys that change together."""
+"""Axes of a study: lists, ranges, and keys that change together."""
 
 from __future__ import annotations
 
@@ -19,8 +19,6 @@ from mesokit.errors import CaseError
 
 RANGE = re.compile(r"\s*([^:,\s]+):([^:,\s]+):(\d+)(:log)?\s*")
 FORM = "expected KEY=VALUE,VALUE,... or KEY=FIRST:LAST:NUMBER, such as fluid.timestep=0.05:0.2:4"
-
-
 MOST = 100_000  # runs of a study
 
 
@@ -77,9 +75,8 @@ class Axis:
             if isinstance(given, str):
                 given = _values(key, given)
             if not isinstance(given, Sequence) or not given:
-                raise CaseError(
-                    f"vary.{key} = {show(given)}: expected a list, or a range as a text"
-                )
+                why = "expected a list, or a range as a text"
+                raise CaseError(f"vary.{key} = {show(given)}: {why}")
             columns[key] = list(given)
         return cls._of(columns)
 
@@ -103,11 +100,11 @@ class Axis:
         return axes
 
     def table(self) -> dict[str, list[Any]]:
-        """By key its values, as a [[vary]] table holds them."""
+        """Values by key, as in a [[vary]] table."""
         return {key: [row[i] for row in self.values] for i, key in enumerate(self.keys)}
 
     def text(self) -> str:
-        """As the command line has it.
+        """The text of the option --vary.
 
         >>> Axis(("fluid.kT", "run.steps"), ((1.0, 10), (2.0, 20))).text()
         'fluid.kT=1.0,2.0; run.steps=10,20'
@@ -141,34 +138,30 @@ def grid(axes: Sequence[Axis]) -> list[dict[str, Any]]:
 
 
 def _values(key: str, text: str) -> list[Any]:
-    found = RANGE.fullmatch(text)
-    if found:
+    where = f"vary {key}={text.strip()}"
+    if found := RANGE.fullmatch(text):
         try:
             first, last, number = float(found[1]), float(found[2]), int(found[3])
         except ValueError:
-            raise CaseError(f"vary {key}={text.strip()}: {FORM}") from None
+            raise CaseError(f"{where}: {FORM}") from None
         if not (math.isfinite(first) and math.isfinite(last)):
-            raise CaseError(f"vary {key}={text.strip()}: expected two finite numbers")
+            raise CaseError(f"{where}: expected two finite numbers")
         if not math.isfinite(last - first):
-            raise CaseError(f"vary {key}={text.strip()}: expected two numbers, not that far apart")
+            raise CaseError(f"{where}: expected two numbers, not that far apart")
         if number > MOST:
-            raise CaseError(f"vary {key}={text.strip()}: expected at most {MOST} values")
+            raise CaseError(f"{where}: expected at most {MOST} values")
         if found[4] and not (first > 0 and last > 0):
-            raise CaseError(f"vary {key}={text.strip()}: a logarithmic range begins above 0")
+            raise CaseError(f"{where}: a logarithmic range begins above 0")
         space = np.geomspace if found[4] else np.linspace
         values = [float(f"{value:.12g}") for value in space(first, last, number)]
-        return [int(v) for v in values] if _whole(found, values) else list(values)
+        whole = all(re.fullmatch(r"[-+]?\d+", end) for end in found.group(1, 2)) and not found[4]
+        whole = whole and all(value == round(value) for value in values)
+        return [int(value) for value in values] if whole else list(values)
     with contextlib.suppress(tomllib.TOMLDecodeError):
         return list(tomllib.loads(f"values = [{text}]")["values"])
     if re.fullmatch(r"\s*[-+.\deE]+:[-+.\deE:]*\s*", text):
-        raise CaseError(f"vary {key}={text.strip()}: {FORM}")
+        raise CaseError(f"{where}: {FORM}")
     return [_value(part.strip()) for part in text.split(",")]  # bare words are texts
-
-
-def _whole(found: Any, values: Sequence[float]) -> bool:
-    """A range between whole numbers, all of whose values are whole."""
-    ends = all(re.fullmatch(r"[-+]?\d+", found[i]) for i in (1, 2))
-    return ends and not found[4] and all(value == round(value) for value in values)
 
 
 def _value(text: str) -> Any:

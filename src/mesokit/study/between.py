@@ -1,9 +1,9 @@
-"""What theory says between the points of a study: that of cases which were not run."""
+"""Theory between the points of a study: expectations for cases that were not run."""
 
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -21,18 +21,18 @@ ALIKE = 1e-9  # part by which two expectations may differ
 def theory_between(
     base: Base, runs: Sequence[Planned], rows: Sequence[Pooled], keys: Sequence[str], log: bool
 ) -> Theory | None:
-    """What is expected of a number between its points; None where that cannot be had.
+    """Expectation of a number between its points; None if it cannot be computed.
 
     Parameters
     ----------
-    base: the case that all runs differ from.
-    runs: those of the study, for what they have measured: a theory may need some of it.
+    base: the case that all runs share.
+    runs: all runs of the study; a theory may need measured numbers.
     rows: the number at the points of one curve, which is drawn against the first key.
     keys: key paths of the axis, whose values change together.
     log: whether places between two points have equal ratios.
 
-    A place takes what both of its neighbours have measured. Where these lead to different
-    expectations, as in another phase, it has none.
+    A place uses the measured numbers of both neighbours. If these lead to different expectations,
+    as in different phases, it has none.
     """
     key = keys[0]
     rows = sorted(rows, key=lambda row: float(row.point[key]))
@@ -55,11 +55,10 @@ def theory_between(
 
 
 def _memory(runs: Sequence[Planned], row: Pooled) -> Mapping[str, Any]:
-    """What the observable of a number has kept in the first run at its point."""
+    """State of the observable of a number in the first run at its point."""
     run = next(run for run in runs if run.point == row.point and run.ended)
     accumulators, _ = measured(run.files.directory, run.files.case)
-    state: Mapping[str, Any] = accumulators[row.observable].state()
-    return state
+    return cast(Mapping[str, Any], accumulators[row.observable].state())
 
 
 def _points(
@@ -90,7 +89,7 @@ def _mixed(low: Any, high: Any, share: float) -> Any:
 def _expected(
     base: Base, point: Mapping[str, Any], row: Pooled, memory: Mapping[str, Any]
 ) -> float:
-    """What is expected of the number at a point, as its observable says with this memory."""
+    """Expectation of the number at a point, from its observable with this memory."""
     case = base.case(point, 1)
     observable = next(one for one in case.observe if one.label == row.observable)
     accumulator = observable.accumulator(case)

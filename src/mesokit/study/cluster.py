@@ -1,14 +1,17 @@
-"""Runs on a cluster, by way of Dask: its workers take them, one at a time each.
+"""Runs on a cluster: by workers of Dask, or by a job array of Slurm.
 
 Source: Dask and dask-jobqueue, which start workers as jobs of Slurm, PBS and others.
 """
 
+import shlex
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
+from mesokit.io.atomic import write_text
 from mesokit.io.optional import package
 from mesokit.study.work import carry
 
@@ -19,7 +22,21 @@ QUEUES = {
     "lsf": "LSFCluster",
     "htcondor": "HTCondorCluster",
 }
-LEAST = {"cores": 1, "processes": 1, "memory": "2GB"}  # of a job, where its settings say nothing
+LEAST = {"cores": 1, "processes": 1, "memory": "2GB"}  # of a job without settings
+SCRIPT = """\
+#!/bin/bash
+# The runs of a study, a job each. Submit it with: sbatch {name}
+# Jobs that are cut off go on from their checkpoints when it is submitted again; what has ended is
+# not repeated. When all have ended: mesokit study {folder}
+#SBATCH --job-name={job}
+#SBATCH --array=1-{runs}
+#SBATCH --cpus-per-task={threads}
+#SBATCH --time=24:00:00
+#SBATCH --signal=B:USR1@120
+#SBATCH --output={folder}/job-%A_%a.txt
+cd {here}
+exec {python} -m mesokit study {folder} --only "$SLURM_ARRAY_TASK_ID" --threads {threads}
+"""
 
 
 class Cluster:
@@ -82,19 +99,34 @@ class Cluster:
 
     @property
     def places(self) -> int:
-        """How many runs the workers that are there take at once."""
         return max(1, len(self.client.ncores()))
 
     def submit(self, path: Path) -> Any:
-        """Carry the run in a folder, which all workers see, to its end."""
-        work = carry, str(path.resolve()), self.threads, self.modules
-        return self.client.submit(*work, pure=False)
+        run = str(path.resolve())
+        return self.client.submit(carry, run, self.threads, self.modules, pure=False)
 
     def stop(self) -> None:
         """Runs that are on other machines end with their workers, at their last checkpoints."""
 
     def close(self) -> None:
-        """End the workers that were started here."""
         self.client.close()
         if self.own is not None:
             self.own.close()
+
+
+def write_job_array(folder: Path, runs: int, threads: int = 1) -> Path:
+    """Write the script `job-array.sh` into the folder of a study. Raises RunError.
+
+    Slurm sends SIGUSR1 two minutes before the end, upon which a run writes a checkpoint.
+    """
+    path = folder / "job-array.sh"
+    text = SCRIPT.format(
+        name=shlex.quote(str(path)),
+        folder=shlex.quote(str(folder)),
+        job=shlex.quote(folder.name),
+        runs=runs,
+        threads=threads,
+        here=shlex.quote(str(Path.cwd())),
+        python=shlex.quote(sys.executable),
+    )
+    return write_text(path, text)

@@ -1,6 +1,5 @@
 """A measured number against a parameter: points with error bars, theory, fits."""
 
-import itertools
 import re
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -42,20 +41,19 @@ TICKS = 6  # of values within a decade, each of which has its own
 
 
 class Theory(NamedTuple):
-    """What is expected (n,), nan where nothing is, at many places (n,) of a curve."""
+    """Expectation (n,), nan where it is unknown, at many places (n,) of a curve."""
 
     x: Array
     expected: Array
 
 
 class Curve(NamedTuple):
-    """Points (n,) of one curve, what is expected there (nan where nothing is), and its name.
+    """Points (n,) of one curve, their expectations (nan where unknown), and its name.
 
-    `theory` is what the expectation is, in a few words. `between` gives it between the points as
-    well, for an axis that is logarithmic or not, or None where it cannot. `seeds` are rows (m, 3)
-    of place, value and error: the runs that a point was pooled from. `cautions` are what must be
-    known to read points (n,), in words that go on with "at", and of which points. `rough` says
-    where theory is approximate (n,), `steady` where the run measured the state that theory is of;
+    `theory` names the theory. `between` gives it between the points for an axis that is logarithmic
+    or not, or None. `seeds` are rows (m, 3) of place, value and error of the runs that were pooled.
+    `cautions` are words before "at" and the points (n,) that they concern. `rough` is true where
+    theory is approximate (n,), `steady` where the run measured the steady state of the theory;
     None means nowhere and everywhere.
     """
 
@@ -73,7 +71,7 @@ class Curve(NamedTuple):
 
     @property
     def ratios(self) -> tuple[Array, Array]:
-        """Measured over expected and its error (n,), nan where that says nothing."""
+        """Measured over expected and its error (n,), nan where it is not known."""
         use = (self.expected != 0) & (self.error < abs(self.expected))
         if self.steady is not None:
             use &= self.steady
@@ -94,14 +92,13 @@ def draw(
 
     Parameters
     ----------
-    curves: what is drawn.
     x, y: name and unit of each axis.
     fit: "line" or "power", fitted to each curve.
-    log: which axes are logarithmic: "x", "y", "x,y", True for both, False for none. Unless said, x
-        is where its values are a geometric sequence, and y if it is then above zero everywhere and
-        spans a decade; both are for a power.
-    note: what the points are, for the legend.
-    width: that of the figure, in inches.
+    log: logarithmic axes: "x", "y", "x,y", True for both, False for none. By default x is if its
+        values are a geometric sequence, and y if it is then positive and spans a decade; both are
+        for a power.
+    note: text about the points, for the legend.
+    width: width of the figure in inches.
 
     Raises CaseError for another fit, or one without enough points, and for a logarithmic axis of
     values that are not above zero.
@@ -119,7 +116,7 @@ def draw(
             ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
         else:
             ax = figure.subplots()
-        several = len(curves) > 1  # then the legend has their names, and the rest stands below
+        several = len(curves) > 1  # the legend has their names; all else is written below
         dots = "; dots: each run" * any(len(curve.seeds) for curve in curves)
         notes = [", ".join(filter(None, [note, SPREAD])) + dots] if several else []
         for set_scale, logs in zip((ax.set_xscale, ax.set_yscale), scales, strict=True):
@@ -156,7 +153,7 @@ def draw(
 def logarithmic(
     curves: Sequence[Curve], fit: str | None = None, log: bool | str | None = None
 ) -> tuple[bool, bool]:
-    """Whether either axis is logarithmic, as `draw` says.
+    """True for each axis that is logarithmic, by the rules of `draw`.
 
     Raises CaseError for other axes, and for a number that is not above zero on such an axis.
     """
@@ -168,8 +165,8 @@ def logarithmic(
     elif log is not None:
         chosen = bool(log), bool(log)
     else:
-        wide = all(geometric(curve.x) for curve in curves)
-        chosen = (True, True) if fit == "power" else (wide, wide and _spans_a_decade(curves))
+        even = all(geometric(curve.x) for curve in curves)
+        chosen = (True, True) if fit == "power" else (even, even and _spans_a_decade(curves))
     for name, logs, each in zip("xy", chosen, ("x", "value"), strict=True):
         values = np.concatenate([getattr(curve, each) for curve in curves])
         values = values[np.isfinite(values)]
@@ -181,7 +178,7 @@ def logarithmic(
 
 
 def geometric(x: Array) -> bool:
-    """Whether values (n,), three or more, have one ratio from each to the next.
+    """True if three or more values (n,) have one ratio from each to the next.
 
     >>> [geometric(np.array(x)) for x in ([1, 2, 4.0], [1, 2, 3.0], [1, 10.0], [0, 1, 10.0])]
     [True, False, False, False]
@@ -194,7 +191,7 @@ def geometric(x: Array) -> bool:
 
 
 def _spans_a_decade(curves: Sequence[Curve]) -> bool:
-    """Whether measured and expected numbers are above zero, and of very different size."""
+    """True if measured and expected numbers are positive and span a decade."""
     values = np.concatenate([np.concatenate([c.value, c.expected]) for c in curves])
     values = values[np.isfinite(values)]
     return bool(len(values) and values.min() > 0 and values.max() >= DECADE * values.min())
@@ -257,7 +254,7 @@ def _parts(curve: Curve, x: Array, expected: Array, joined: bool) -> tuple[Array
 
 
 def _hides_errors(curves: Sequence[Curve]) -> bool:
-    """Whether most error bars of what has theory are smaller than the symbols."""
+    """True if most error bars of points with theory are smaller than the symbols."""
     ratios = np.concatenate([curve.ratios[0] for curve in curves])
     error = np.concatenate([curve.error for curve in curves])[np.isfinite(ratios)]
     value = np.concatenate([curve.value for curve in curves])
@@ -266,7 +263,6 @@ def _hides_errors(curves: Sequence[Curve]) -> bool:
 
 
 def _draw_ratio(ax: Any, curve: Curve, number: int) -> None:
-    """Measured over expected, of points that have both."""
     look: Any = {"mfc": "white", "color": COLOURS[number % len(COLOURS)], "ms": 4, "capsize": 2}
     ax.axhline(1, color="black", lw=1, zorder=1)
     ax.errorbar(curve.x, *curve.ratios, fmt=MARKERS[number % len(MARKERS)], **look)
@@ -281,7 +277,7 @@ def _draw_fit(ax: Any, curve: Curve, number: int, fit: str) -> None:
 
 
 def _leave_out_wild(ax: Any, curves: Sequence[Curve], logs: bool, notes: list[str]) -> None:
-    """Let the axis show the other numbers where a few error bars are longer than all of these."""
+    """Limit the axis to the other points if a few error bars are longer than all of them."""
     rows = [np.stack([c.x, c.value, c.error], axis=1) for c in curves]
     value, error = np.concatenate([*rows, *(c.seeds for c in curves)])[:, 1:].T
     finite = np.isfinite(value) & np.isfinite(error)
@@ -304,34 +300,39 @@ def _leave_out_wild(ax: Any, curves: Sequence[Curve], logs: bool, notes: list[st
 
 
 def _say(notes: list[str], curve: Curve, some: Any, what: str) -> None:
-    """Name points of a curve in a note below the figure."""
+    """Name points with their values in a note below the figure."""
     if not some.any():
         return
     points = zip(curve.x[some], curve.value[some], curve.error[some], strict=True)
     words = [
         f"{x:g}" if np.isnan(value) else f"{with_error(value, error)} at {x:g}"
-        for x, value, error in itertools.islice(points, NAMED)
+        for x, value, error in points
     ]
-    words += [f"{some.sum() - NAMED} more"] * bool(some.sum() > NAMED)
-    of = f"{curve.label}, " * bool(curve.label)
-    notes.append(f"{of}{what} {', '.join(words)}")
+    notes.append(f"{_of(curve)}{what} {_first_and_more(words)}")
 
 
 def _caution(notes: list[str], curve: Curve, what: str, some: NDArray[np.bool_]) -> None:
-    """Say below the figure of which points something must be known."""
+    """Name points with a caution in a note below the figure."""
     if not some.any():
         return
-    words = [f"{x:g}" for x in curve.x[some][:NAMED]]
-    words += [f"{some.sum() - NAMED} more"] * bool(some.sum() > NAMED)
-    where = "all points" if some.all() and len(some) > 1 else ", ".join(words)
-    of = f"{curve.label}, " * bool(curve.label)
-    notes.append(f"{of}{what} at {where}")
+    words = _first_and_more([f"{x:g}" for x in curve.x[some]])
+    where = "all points" if some.all() and len(some) > 1 else words
+    notes.append(f"{_of(curve)}{what} at {where}")
+
+
+def _first_and_more(words: Sequence[str]) -> str:
+    more = [f"{len(words) - NAMED} more"] * (len(words) > NAMED)
+    return ", ".join([*words[:NAMED], *more])
+
+
+def _of(curve: Curve) -> str:
+    return f"{curve.label}, " * bool(curve.label)
 
 
 class Fitted(NamedTuple):
-    """A fit to one curve: `fit` of y, or of the logarithms for a power, and what it says.
+    """A fit to one curve: `fit` of y, or of the logarithms for a power, and its text.
 
-    `formula` is y = ... in words, `label` of which curve.
+    `formula` is y = ..., `label` the name of the curve.
     """
 
     label: str
@@ -372,22 +373,21 @@ def fitted(curve: Curve, kind: str) -> Fitted:
     x, value, error = curve.x[use], curve.value[use], curve.error[use]
     if len(np.unique(x)) < 2:
         raise CaseError(f"fit = {show(kind)}: too few points with an error bar")
-    if kind == "power":
-        found = weighted_line(np.log(x), np.log(value), error / value)
-        front = float(np.exp(found.coefficients[0]))
-        first = with_error(front, front * float(found.errors[0]))
-        second = with_error(float(found.coefficients[1]), float(found.errors[1]))
-        return Fitted(curve.label, kind, found, f"y = {first} x^{second}")
-    found = weighted_line(x, value, error)
-    start, slope = (float(c) for c in found.coefficients)
-    first = with_error(start, float(found.errors[0]))
-    second = with_error(abs(slope), float(found.errors[1]))
-    sign = "-" if slope < 0 else "+"
-    return Fitted(curve.label, kind, found, f"y = {first} {sign} {second} x")
+    power = kind == "power"
+    data = (np.log(x), np.log(value), error / value) if power else (x, value, error)
+    found = weighted_line(*data)
+    (start, slope), (error_start, error_slope) = found.coefficients.tolist(), found.errors.tolist()
+    if power:
+        front = float(np.exp(start))
+        words = f"{with_error(front, front * error_start)} x^{with_error(slope, error_slope)}"
+    else:
+        sign = "-" if slope < 0 else "+"
+        words = f"{with_error(start, error_start)} {sign} {with_error(abs(slope), error_slope)} x"
+    return Fitted(curve.label, kind, found, f"y = {words}")
 
 
 def _straight(x: Array, y: Array, scales: tuple[bool, bool]) -> bool:
-    """Whether points (n,) of a curve lie on a line in these axes; one alone does not."""
+    """True if two or more points (n,) of a curve lie on a line in these axes."""
     if len(x) < 2:
         return False
     if np.ptp(y) <= BENT * abs(y).max():

@@ -1,6 +1,7 @@
 """The report of a study: one file that holds everything, to be read, printed or sent."""
 
 import shlex
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -31,11 +32,11 @@ ALWAYS = {
     "repeat": "To repeat it",
 }  # fmt: skip
 OF_A_RUN = ("seed", "case digest", "started", "ended", "failed", "resumed", "command")
-MOST = 4  # different machines, or whatever, that are named
+MOST = 4  # different values, such as machines, that are named
 
 
 class Studied(Protocol):
-    """What a report asks of a study."""
+    """The part of a study that a report needs."""
 
     path: Path
     base: Base
@@ -44,16 +45,11 @@ class Studied(Protocol):
     runs: list[Planned]
 
     @property
-    def keys(self) -> list[str]:
-        """The key paths that are varied."""
-
-    def table(self) -> list[Pooled]:
-        """Every compared number at every point."""
-
+    def keys(self) -> list[str]: ...
+    def table(self) -> list[Pooled]: ...
     def theory_between(
         self, rows: Sequence[Pooled], keys: Sequence[str], log: bool
-    ) -> Theory | None:
-        """What is expected between the points of a curve."""
+    ) -> Theory | None: ...
 
 
 class RunRow(NamedTuple):
@@ -115,16 +111,14 @@ def page(study: Studied, path: Path) -> str:
 
 
 def _lead(study: Studied, done: Sequence[Mapping[str, Any]]) -> str:
-    """How many runs of what, in a line."""
-    points = len(list(by_point(study.runs)))
+    """The numbers of points, seeds and runs, in a line."""
+    points, ended = len(list(by_point(study.runs))), filter(None, (r.get("ended") for r in done))
     words = [
         f"{points} points" if points > 1 else "1 point",
         f"{len(study.seeds)} seeds each" if len(study.seeds) > 1 else "1 seed",
         f"{len(study.runs)} runs",
     ]
-    if any(record.get("ended") for record in done):
-        last = max(record["ended"] for record in done if record.get("ended"))
-        words.append(f"last ended {when(last)}")
+    words += [f"last ended {when(last)}" for last in sorted(ended)[-1:]]
     return ", ".join(words)
 
 
@@ -143,25 +137,21 @@ def _varied(study: Studied) -> list[Row]:
 def _figures(study: Studied, rows: Sequence[Pooled]) -> list[Picture]:
     """Every number that has an error bar against the first key."""
     found: list[Picture] = []
-    names = drawable(rows, study.axes)
-    if not names:
-        return found
-    some = next(run for run in study.runs if run.ended)
-    words_of_key = called(some.files.case, study.keys[0])
-    for name in names:
+    for name in drawable(rows, study.axes):
+        some = next(run for run in study.runs if run.ended)
         each = find_rows(rows, name)
         runs = f"{each[0].runs} runs pooled" if each[0].runs > 1 else "one run"
         notes = dict.fromkeys(row.number.note for row in each if row.number.note)
         words = f"{each[0].number.what} against {study.keys[0]}, {runs} at each point"
-        figure = plot(
-            rows, study.axes, study.keys[0], name, words_of_key, between=study.theory_between
-        )
+        key = study.keys[0], name, called(some.files.case, study.keys[0])
+        figure = plot(rows, study.axes, *key, between=study.theory_between)
         found.append(Picture(name, drawn(figure), "; ".join([words, *list(notes)[:2]]) + "."))
     return found
 
 
 def _run(run: Planned, record: Mapping[str, Any], page: Path) -> RunRow:
-    seconds, report = sum(_seconds(record).values()), RunDirectory(run.path).report_file
+    seconds = sum((record.get("timings") or {}).values())
+    report = RunDirectory(run.path).report_file
     return RunRow(
         point_words(run.point),
         run.seed,
@@ -174,7 +164,7 @@ def _run(run: Planned, record: Mapping[str, Any], page: Path) -> RunRow:
 
 
 def _warnings(study: Studied) -> list[str]:
-    """What `mesokit check` warns of, with the points where it does, unless it is all of them."""
+    """Warnings of `mesokit check`, with their points unless these are all."""
     points = list(by_point(study.runs))
     found: dict[str, list[str]] = {}
     for runs in points:
@@ -194,7 +184,7 @@ def _warnings(study: Studied) -> list[str]:
 
 
 def _origin(records: Iterable[Mapping[str, Any]]) -> list[Row]:
-    """What all runs come from; where they differ, what there is."""
+    """Origin of all runs; if they differ, up to MOST values."""
     found: dict[str, dict[tuple[str, str], None]] = {}
     for record in records:
         for name, value, note in origin_rows(record):
@@ -208,21 +198,16 @@ def _origin(records: Iterable[Mapping[str, Any]]) -> list[Row]:
     return rows
 
 
-def _seconds(record: Mapping[str, Any]) -> dict[str, float]:
-    return record.get("timings") or {}
-
-
 def _together(records: Iterable[Mapping[str, Any]]) -> dict[str, float]:
     """Seconds of each stage, of all runs."""
-    total: dict[str, float] = {}
+    total: Counter[str] = Counter()
     for record in records:
-        for stage, seconds in _seconds(record).items():
-            total[stage] = total.get(stage, 0.0) + seconds
-    return total
+        total.update(record.get("timings") or {})
+    return dict(total)
 
 
 def _again(study: Studied) -> tuple[str, str]:
-    """The command that makes the study anew, and the study file that it needs, if it does."""
+    """The command that makes the study anew, and the text of its study file, "" without one."""
     with_options = _command(study)
     if with_options:
         return with_options, ""
@@ -235,7 +220,7 @@ def _again(study: Studied) -> tuple[str, str]:
 
 
 def _command(study: Studied) -> str:
-    """With options, if these can say it: seeds in a row, and values that are read back alike."""
+    """The command with options, "" if they cannot express all seeds and values."""
     first = study.base.data.get("run", {}).get("seed", 1)
     if study.seeds != [first + i for i in range(len(study.seeds))]:
         return ""

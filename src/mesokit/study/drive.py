@@ -1,4 +1,4 @@
-"""Carries the runs of a study to their ends, and tells how far they are."""
+"""Carries out the runs of a study, and reports progress."""
 
 import signal
 import time
@@ -21,31 +21,31 @@ LOOK_SECONDS = 1.0  # between two looks into the folders of the runs in hand
 
 
 class Workers(Protocol):
-    """Where runs are carried out: processes, this process, or a cluster."""
+    """Processes, this process, or a cluster, which carry out runs."""
 
     @property
     def places(self) -> int:
-        """How many runs they take at once."""
+        """The number of runs at once."""
 
     def submit(self, path: Path) -> Future[str]:
-        """Carry the run in a folder to its end; the answer says why it did not come there."""
+        """Carry the run in a folder to its end; the result is "", or why it did not end."""
 
     def stop(self) -> None:
-        """Let the runs in hand end at a checkpoint."""
+        """Let the present runs end at a checkpoint."""
 
     def close(self) -> None:
-        """Wait for what is in hand, and end."""
+        """Wait for the present runs, and end."""
 
 
 class StudyReporter(Reporter):
-    """Tells how a study goes: its steps are those of all particles of all runs, in millions."""
+    """Progress of a study, in steps times particles of all runs."""
 
     def __init__(self, quiet: bool = False, **options: Any) -> None:
         super().__init__(quiet, **options)
         self.runs = self.ended = 0
 
     def update(self, step: int) -> None:
-        """So much is done; while nothing is, runs compile, and there is no rate."""
+        """Report progress; while there is none, runs compile and there is no rate."""
         self.fresh = self.fresh or step == self.first
         super().update(step)
 
@@ -56,7 +56,6 @@ class StudyReporter(Reporter):
         return f"{self.ended} of {self.runs} runs"
 
     def words(self, step: int) -> str:
-        """Runs that have ended, the rate and the time left."""
         rate, ended = self.rate(), f"{self.count()} have ended"
         if step >= self.total:
             return f"{ended}, the last results and figures are being written"
@@ -89,7 +88,7 @@ def reporter_for(progress: StudyReporter | bool | None) -> StudyReporter:
 
 @dataclass
 class _Work:
-    """A run in terms of what it costs: steps times particles."""
+    """A run and its work: steps times particles."""
 
     run: Planned
     particles: int
@@ -107,11 +106,15 @@ class _Work:
 def drive(
     runs: Sequence[Planned], workers: Workers, progress: StudyReporter
 ) -> list[tuple[Planned, str]]:
-    """Carry the runs that have not ended to their ends; returns those that fail, and why.
+    """Carry the runs that have not ended to their ends; returns those that fail, with reasons.
 
-    Raises Stopped after a signal, once what is in hand has ended at its checkpoints.
+    Raises Stopped after a signal, once the present runs have ended at their checkpoints.
     """
-    works = [_work(run) for run in runs]
+    works = []
+    for run, case in ((run, run.files.case) for run in runs):
+        particles = sum(group.number for group in case.groups)
+        steps = case.run.warmup + case.run.steps
+        works.append(_Work(run, particles, steps, kind_of(case), has_run(case)))
     waiting = [work for work in works if not work.run.ended]
     progress.runs, progress.ended = len(works), len(works) - len(waiting)
     if not waiting:
@@ -159,19 +162,12 @@ def drive(
 
 
 def _seen(works: Sequence[_Work]) -> int:
-    """What is known to have been done of runs that have not ended."""
+    """Work that is known to be done of runs that have not ended."""
     return sum(work.particles * work.seen for work in works)
 
 
-def _work(run: Planned) -> _Work:
-    case = run.files.case
-    particles = sum(group.number for group in case.groups)
-    steps = case.run.warmup + case.run.steps
-    return _Work(run, particles, steps, kind_of(case), has_run(case))
-
-
 def _hand_out(waiting: list[_Work], in_hand: list[_Work], workers: Workers) -> None:
-    """Give out what there is room for; of a kind that is not compiled yet only one at first."""
+    """Submit runs while there are places; of a kind that is not compiled yet only one at first."""
     for work in list(waiting):
         if len(in_hand) >= workers.places:
             return
@@ -184,11 +180,11 @@ def _hand_out(waiting: list[_Work], in_hand: list[_Work], workers: Workers) -> N
 
 
 def _answer(work: _Work, stopped: list[signal.Signals]) -> str:
-    """Why a run has not come to its end, nothing if it has or was stopped with the others."""
+    """Why a run has not ended, "" if it has or was stopped with the others."""
     assert work.future is not None
     try:
         why = str(work.future.result())
-    except Exception as error:  # of what carries it: a node that is gone, a package that is not
+    except Exception as error:  # of its worker: a lost node, a missing package
         why = f"{type(error).__name__}: {error}"
     if why.startswith("stopped") and not stopped:
         stopped.append(signal.SIGINT)

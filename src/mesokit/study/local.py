@@ -14,14 +14,14 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.run.folder import note_failed
 from mesokit.study.work import carry
 
-LOST = "its process ended"  # killed from outside, or for want of memory
+LOST = "its process ended"  # killed, or out of memory
 
 
 class Processes:
-    """So many workers at once.
+    """Several workers at once.
 
-    Each is a program of its own, not a copy of this one: scripts and notebooks need no guard. They
-    do not hear Ctrl-C, which is for the study: `stop` tells those that run.
+    Each is a program of its own and not a copy of this one, so scripts and notebooks need no guard.
+    Ctrl-C goes to the study alone; `stop` sends signals to its workers.
     """
 
     def __init__(self, jobs: int, threads: int = 1, modules: Sequence[str] = ()) -> None:
@@ -32,7 +32,6 @@ class Processes:
         self.stopping = False
 
     def submit(self, path: Path) -> Future[str]:
-        """Carry the run in a folder to its end; the answer is that of `work.carry`."""
         return self.pool.submit(self._carry, path)
 
     def _carry(self, path: Path) -> str:
@@ -40,7 +39,7 @@ class Processes:
             return "stopped before the start"
         worker = self._worker()
         self.busy.add(worker)
-        if self.stopping:  # while it was made; `stop` may not have seen it
+        if self.stopping:  # meanwhile: `stop` may have missed the new worker
             self.busy.discard(worker)
             self.idle.put(worker)
             return "stopped before the start"
@@ -57,13 +56,13 @@ class Processes:
             status = worker.wait()
             by = f" by {signal.Signals(-status).name}" if status < 0 else f" with {status}"
             why = f"{LOST}{by}; perhaps there was too little memory"
-            note_failed(RunDirectory(path), why)  # it could not say so itself
+            note_failed(RunDirectory(path), why)  # the process could not
             return why
         self.idle.put(worker)
         return answer.rstrip("\n")
 
     def _worker(self) -> subprocess.Popen[str]:
-        """One that is idle, or a new one."""
+        """An idle worker, or a new one."""
         while not self.idle.empty():
             worker = self.idle.get()
             if worker.poll() is None:
@@ -71,19 +70,20 @@ class Processes:
         apart: Any = {"start_new_session": True}
         if sys.platform == "win32":
             apart = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
-        command = [sys.executable, "-m", "mesokit.study.work", *self.arguments]
-        pipes: Any = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-        paths = os.pathsep.join(["", *filter(None, sys.path)]).lstrip(os.pathsep)
-        environment = os.environ | {"PYTHONPATH": paths}
-        return subprocess.Popen(command, env=environment, encoding="utf-8", **pipes, **apart)
+        return subprocess.Popen(
+            [sys.executable, "-m", "mesokit.study.work", *self.arguments],
+            env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            encoding="utf-8",
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            **apart,
+        )
 
     @property
     def places(self) -> int:
-        """How many runs it takes at once."""
         return self.jobs
 
     def stop(self) -> None:
-        """Let the runs in hand end at a checkpoint."""
         self.stopping = True
         for worker in list(self.busy):
             if sys.platform == "win32":
@@ -92,7 +92,6 @@ class Processes:
                 worker.terminate()
 
     def close(self) -> None:
-        """Wait for what is in hand, and end all workers."""
         self.pool.shutdown()
         while not self.idle.empty():
             worker = self.idle.get()
@@ -103,9 +102,9 @@ class Processes:
 
 
 class Here:
-    """No worker but this process, one run after another, for parts that only a script defines.
+    """This process, one run after another, for parts that only a script defines.
 
-    A signal ends the run in hand, and the study with it.
+    A signal ends the present run and the study.
     """
 
     places = 1
@@ -114,13 +113,12 @@ class Here:
         self.threads = threads
 
     def submit(self, path: Path) -> Future[str]:
-        """Carry the run in a folder to its end, before this returns."""
         done: Future[str] = Future()
         done.set_result(carry(str(path), self.threads))
         return done
 
     def stop(self) -> None:
-        """Nothing is in hand."""
+        """There is no run that could go on."""
 
     def close(self) -> None:
-        """Nothing is open."""
+        """There is nothing to end."""

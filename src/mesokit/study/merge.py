@@ -1,16 +1,15 @@
 """Runs of one case as one: their samples are pooled, not their results.
 
-The blocks of time of all runs are put in a row, so that ratios and fits are those of all samples,
-and error bars see both what is correlated within a run and how runs scatter.
+Blocks of time of all runs stand in a row. So ratios and fits are those of all samples, and error
+bars contain both the correlations within a run and the scatter of runs.
 """
-
-from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import RunError
 from mesokit.io import h5md
@@ -22,12 +21,9 @@ from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.caveats import with_those_of
 from mesokit.run.opened import RunFiles
 from mesokit.seam.pooled import pool
+from mesokit.seam.result import Result
 
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.seam.result import Result
-
-MAY_DIFFER = (
+MAY_DIFFER = (  # beginnings of keys
     "run.seed",
     "run.replicas",
     "run.steps",
@@ -68,15 +64,18 @@ def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
     together = pooled(files)
     for why in together.refused.values():
         raise why
-    record = [_record(*each) for each in zip(files, together.steps, strict=True)]
-    told = dict.fromkeys(words for one in files for words in one.provenance.get("warnings", ()))
-    own = {"merged": record, "warnings": list(told)}
+    record = [
+        {"run": str(one.path.resolve()), "seed": one.case.run.seed, "step": step}
+        for one, step in zip(files, together.steps, strict=True)
+    ]
+    warned = dict.fromkeys(words for one in files for words in one.provenance.get("warnings", ()))
+    own = {"merged": record, "warnings": list(warned)}
     return _write(files[0].case, together.results, own, output)
 
 
 class Together(NamedTuple):
-    """What observables say of the samples of several runs, which of them cannot be pooled and why,
-    and the step that each run has come to."""
+    """Results from the samples of several runs, errors of observables that cannot be pooled, and
+    the last step of each run."""
 
     results: list[Result]
     refused: dict[str, RunError]
@@ -110,7 +109,7 @@ def pooled(runs: Sequence[RunFiles]) -> Together:
 def _write(
     case: Case, results: Sequence[Result], own: dict[str, Any], output: str | Path
 ) -> RunFiles:
-    """The folder, which is there with all that belongs to it, or not at all."""
+    """Write the folder of the merged run: whole, or not at all."""
     from mesokit.report import save_all
 
     output = Path(output)
@@ -133,11 +132,6 @@ def _write(
     return RunFiles(output)
 
 
-def _record(files: RunFiles, step: int) -> dict[str, Any]:
-    """What is kept of one of the runs."""
-    return {"run": str(files.path.resolve()), "seed": files.case.run.seed, "step": step}
-
-
 def _require_alike(files: Sequence[RunFiles]) -> None:
     """Raise RunError unless all runs are of one case, each with a seed of its own."""
     first = files[0]
@@ -145,7 +139,8 @@ def _require_alike(files: Sequence[RunFiles]) -> None:
     for each in files:
         if "merged" in each.provenance:
             raise RunError(f"{each.path}: holds merged runs; name those that it is made of")
-        here, there = _table(first), _table(each)
+        # files that runs keep in their folders are named without the folder
+        here, there = (flat(one.case.to_toml(one.path)) for one in (first, each))
         key = different_key(here, there, MAY_DIFFER)
         if key is not None:
             raise RunError(
@@ -164,7 +159,7 @@ def _require_alike(files: Sequence[RunFiles]) -> None:
 def different_key(
     one: Mapping[str, Any], other: Mapping[str, Any], may_differ: tuple[str, ...]
 ) -> str | None:
-    """The first key path in which two cases differ, but for those that begin so; None if none does.
+    """The first key path that differs between two cases, without those that may; None if none does.
 
     >>> different_key({"run.seed": 1, "box.size": [8, 8]}, {"box.size": [8, 9]}, ("run.seed",))
     'box.size'
@@ -173,11 +168,6 @@ def different_key(
         if not key.startswith(may_differ) and one.get(key) != other.get(key):
             return key
     return None
-
-
-def _table(files: RunFiles) -> dict[str, Any]:
-    """The case of a run; files that it keeps in its folder are named without it."""
-    return flat(files.case.to_toml(files.path))
 
 
 def flat(text: str) -> dict[str, Any]:

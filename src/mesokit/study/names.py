@@ -1,4 +1,4 @@
-"""What the keys of a case and measured numbers are called in pictures."""
+"""Names of keys of a case and of measured numbers in pictures."""
 
 import re
 from typing import Any
@@ -7,7 +7,7 @@ from mesokit.seam.in_units import units_of
 
 LONGEST = 36  # letters of an explanation beside a name
 VECTOR = "one number for each axis"  # explains no meaning
-# what a number is, at the beginning of its name: no conditions, which follow in some names
+# by the beginning of the name of a number, without the conditions that follow in some names
 SYMBOLS = {
     "viscosity": r"\nu", "storage modulus": "G'", "loss modulus": "G''", "permeability": "k",
     "diffusion coefficient": "D", "mean polar order": r"\varphi", "susceptibility": r"\chi",
@@ -20,7 +20,7 @@ CONDITIONS = "from|along|of|at|up to|in"
 
 
 def called(case: Any, key: str) -> tuple[str, str]:
-    """A name in words, and the unit, of a key; the key itself where nothing says more.
+    """Name in words and unit of a key; the key itself if there is no description.
 
     >>> from mesokit import Box, Case, Molecule, Run
     >>> case = Case(run=Run(steps=1), box=Box([8, 8]))
@@ -52,7 +52,7 @@ def called(case: Any, key: str) -> tuple[str, str]:
 
 
 def with_symbol(what: str) -> str:
-    """The name of a measured number, and its symbol where it has one.
+    """The name of a measured number, with its symbol if it has one.
 
     >>> with_symbol("viscosity from curvature"), with_symbol("viscosity over theory")
     ('viscosity $\\\\nu$ from curvature', 'viscosity over theory')
@@ -64,7 +64,7 @@ def with_symbol(what: str) -> str:
 
 
 def _words(name: str, explanation: str) -> str:
-    """The name, with what it means where that is short.
+    """The name, with its meaning if that is short.
 
     >>> _words("K", "U = K r^2"), _words("mass", "mass of a bead"), _words("length", "beads; one")
     ('K in U = K r^2', 'mass of a bead', 'length (beads)')

@@ -1,4 +1,4 @@
-"""The table of a study as pages show it: number after number, with a line for each point."""
+"""The table of a study on pages: number after number, with a line for each point."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -7,7 +7,7 @@ from mesokit.report.table import cells
 from mesokit.study.plan import short_names
 from mesokit.study.table import Pooled
 
-DOUBTFUL = 1e-4  # of p: seeds scatter by chance alone as seldom as theory is 4 errors away
+DOUBTFUL = 1e-4  # p of chi-square: as rare by chance as a deviation of 4 standard errors
 
 
 class Line(NamedTuple):
@@ -48,18 +48,15 @@ def numbers(rows: Sequence[Pooled], keys: Sequence[str]) -> Numbers:
     found: dict[str, list[Pooled]] = {}
     for row in rows:
         found.setdefault(row.name, []).append(row)
-    groups = [_group(each) for each in found.values()]
-    lines = [line for group in groups for line in group.lines]
-    seeds, notes = any(line.seeds for line in lines), any(line.note for line in lines)
+    groups = []
+    for of_number in found.values():
+        first = of_number[0].number
+        shared = first.note if len({row.number.note for row in of_number}) == 1 else ""
+        lines = [_line(row, shared) for row in of_number]
+        groups.append(Group(of_number[0].observable, first.what, first.unit, shared, lines))
+    every = [line for group in groups for line in group.lines]
+    seeds, notes = any(line.seeds for line in every), any(line.note for line in every)
     return Numbers(short_names(keys), groups, seeds, notes)
-
-
-def _group(rows: Sequence[Pooled]) -> Group:
-    first = rows[0].number
-    notes = {row.number.note for row in rows}
-    shared = first.note if len(notes) == 1 else ""
-    lines = [_line(row, shared) for row in rows]
-    return Group(rows[0].observable, first.what, first.unit, shared, lines)
 
 
 def _line(row: Pooled, shared: str) -> Line:

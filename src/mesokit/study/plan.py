@@ -1,4 +1,4 @@
-"""The runs of a study: which there are, where they lie, and how far they have come."""
+"""The runs of a study, their folders and their state."""
 
 from __future__ import annotations
 
@@ -39,30 +39,30 @@ class Planned:
 
     @property
     def files(self) -> RunFiles:
-        """What it has written. Raises RunError if it has not been made."""
+        """Its files. Raises RunError if it has not been made."""
         return RunFiles(self.path)
 
     @property
     def ended(self) -> bool:
-        """Whether it has its results."""
+        """True if it has its results."""
         run = RunDirectory(self.path)
         return run.data_file.exists() and _ended(self.path, *_stamps(run))
 
     @property
     def numbers(self) -> Numbers:
-        """What a run that has ended says. Raises RunError if its results cannot be read."""
+        """Numbers of a run that has ended. Raises RunError if they cannot be read."""
         return _numbers(self.path, *_stamps(RunDirectory(self.path)))
 
     @property
     def failed(self) -> str:
-        """Why it cannot go on, nothing if it can."""
+        """The reason why it cannot go on, "" if it can."""
         with contextlib.suppress(RunError):
             return str(RunDirectory(self.path).read_provenance().get("failed") or "")
         return ""
 
     @property
     def state(self) -> str:
-        """How far it has come, in words."""
+        """Its state in words."""
         if self.ended:
             return "ended"
         if why := self.failed:
@@ -71,7 +71,7 @@ class Planned:
 
     @property
     def step(self) -> int:
-        """Steps done, by what the run says of itself while it goes on, or its last checkpoint."""
+        """Steps done, from its progress file while it runs, or its last checkpoint."""
         run, steps = RunDirectory(self.path), [0]
         with contextlib.suppress(OSError, ValueError):
             steps.append(int(run.progress_file.read_text(encoding="utf-8")))
@@ -97,11 +97,11 @@ def pooled_numbers(runs: Sequence[Planned]) -> Compared:
     """
     if len(runs) == 1:
         return runs[0].numbers.compared
-    stamps = (tuple(_stamps(RunDirectory(run.path))) for run in runs)
+    stamps = (_stamps(RunDirectory(run.path)) for run in runs)
     return _pooled_numbers(tuple(run.path for run in runs), *stamps)
 
 
-# A study asks for these again and again; files that are as they were need not be read again.
+# A study needs these often; files that have not changed are not read again.
 @functools.lru_cache(maxsize=10_000)
 def _ended(path: Path, *stamps: Any) -> bool:
     return RunFiles(path).ended
@@ -144,8 +144,8 @@ def _unknown(results: Iterable[Result], why: str) -> Compared:
     )
 
 
-def _stamps(run: RunDirectory) -> list[Any]:
-    """What tells whether the files of a run have been written anew."""
+def _stamps(run: RunDirectory) -> tuple[Any, ...]:
+    """Time, size and number of the files of a run, which change when they are written anew."""
     stamps: list[Any] = []
     for file in (run.case_file, run.checkpoint_file, run.data_file):
         try:
@@ -153,7 +153,7 @@ def _stamps(run: RunDirectory) -> list[Any]:
             stamps.append((now.st_mtime_ns, now.st_size, now.st_ino))
         except OSError:
             stamps.append(None)
-    return stamps
+    return tuple(stamps)
 
 
 def planned(axes: Sequence[Axis], seeds: Sequence[int], folder: Path) -> list[Planned]:
@@ -199,7 +199,7 @@ def _safe(value: Any) -> str:
 
 
 class Base:
-    """The case that all runs differ from: as a file has it, so that choices can be changed whole.
+    """The case that all runs share, as data of its file, so that whole parts can be replaced.
 
     Raises CaseError for a file that is not there or not TOML.
     """
@@ -212,7 +212,7 @@ class Base:
 
     @classmethod
     def of(cls, given: Case | str | Path, settings: Mapping[str, Any] | None = None) -> Base:
-        """Of a case, or of the file of one, with values that are replaced in it."""
+        """From a case or its file, with values that are replaced in it."""
         if isinstance(given, Case):
             return cls(given.to_toml(), Path.cwd(), settings)
         try:
@@ -234,12 +234,13 @@ class Base:
 
 
 def checked(runs: Sequence[Planned], base: Base) -> list[tuple[Planned, Case]]:
-    """The runs with their cases. Nothing is written.
+    """The runs with their cases, completed by keys that follow from their first states.
 
-    Raises CaseError for a case that cannot be, and RunError where another case lies in the place of
-    a run.
+    Nothing is written. Raises CaseError for a wrong case, and RunError if the folder of a run has
+    another case.
     """
-    cases = [(run, _prepared(base.case(run.point, run.seed))) for run in runs]
+    cases = [(run, base.case(run.point, run.seed)) for run in runs]
+    cases = [(run, method_of(case).initial.prepared(case, {})) for run, case in cases]
     for run, case in cases:
         if RunDirectory(run.path).case_file.exists():
             _require_same(run, case)
@@ -247,10 +248,7 @@ def checked(runs: Sequence[Planned], base: Base) -> list[tuple[Planned, Case]]:
 
 
 def make(cases: Iterable[tuple[Planned, Case]]) -> None:
-    """Make the folders of runs that are not there yet, and longer what is to be. Raises RunError.
-
-    The runs are those that are `checked`.
-    """
+    """Make missing folders of runs that are `checked`, and lengthen other runs. Raises RunError."""
     for run, case in cases:
         there = RunDirectory(run.path)
         if not there.case_file.exists():
@@ -259,15 +257,10 @@ def make(cases: Iterable[tuple[Planned, Case]]) -> None:
             there.write_case(longer(run.files.case, case.run.steps, 0))
 
 
-def _prepared(case: Case) -> Case:
-    """With the keys that follow from the state it starts from."""
-    return method_of(case).initial.prepared(case, {})
-
-
 def _require_same(run: Planned, case: Case) -> None:
-    """Raise RunError if another case lies there; files lie elsewhere once they are kept.
+    """Raise RunError if the folder has another case. A shorter run can be made longer.
 
-    One that is shorter can be made longer: its run goes on.
+    Keys that name files are not compared, because runs keep copies of files.
     """
     there = flat(RunDirectory(run.path).case_file.read_text(encoding="utf-8"))
     wanted = flat(case.to_toml())
@@ -284,6 +277,6 @@ def _require_same(run: Planned, case: Case) -> None:
 
 
 def by_point(runs: Sequence[Planned]) -> Iterator[list[Planned]]:
-    """The runs of each point, that is all its seeds, which follow one another."""
+    """The runs of each point: all seeds, one after another."""
     for _, group in itertools.groupby(runs, key=lambda run: run.point):
         yield list(group)

@@ -15,6 +15,7 @@ from mesokit.seam.result import Comparison
 from mesokit.study.axes import Axis
 from mesokit.study.dependence import Curve, Theory, draw
 from mesokit.study.names import with_symbol
+from mesokit.study.numbers import words_of
 from mesokit.study.plan import short_names
 from mesokit.study.table import Pooled
 
@@ -84,20 +85,15 @@ def curves_of(
             for name, what in found.items()
             for curve in curves_of(rows, axes, key, name, between)
         ]
-    return _curves_of_one(find_rows(rows, number), axes, key, between)
-
-
-def _curves_of_one(
-    rows: Sequence[Pooled], axes: Sequence[Axis], key: str, between: Between | None
-) -> list[Curve]:
-    """The curves of one number, whose rows these are."""
+    rows = find_rows(rows, number)
     keys = [other for axis in axes for other in axis.keys]
     linked = next(axis.keys for axis in axes if key in axis.keys)
-    names = dict(zip(keys, short_names(keys), strict=True))
+    short = dict(zip(keys, short_names(keys), strict=True))
     curves: dict[str, list[Pooled]] = {}
     for row in rows:
-        others = [(names[other], row.point[other]) for other in keys if other not in linked]
-        label = ", ".join(f"{name} = {_word(value)}" for name, value in others)
+        others = {short[other]: row.point[other] for other in keys if other not in linked}
+        words = zip(others, words_of(others.values()), strict=True)
+        label = ", ".join(f"{name} = {word}" for name, word in words)
         curves.setdefault(label, []).append(row)
     together = [key, *(other for other in linked if other != key)]
     return [_curve(label, together, group, between) for label, group in curves.items()]
@@ -161,14 +157,10 @@ def _curve(label: str, keys: Sequence[str], rows: list[Pooled], between: Between
 
 
 def _theory(numbers: Sequence[Comparison]) -> str:
-    """What is expected where it is not approximate, in a few words."""
+    """The theory where it is not approximate, in a few words."""
     if not all(number.steady for number in numbers):
         return "theory of the steady flow, not reached"
     known = [n for n in numbers if np.isfinite(n.expected) and not n.approximate]
     parts = known[0].note.split("; ") if known else []
     name = "; ".join(part for part in parts if "lower bound" not in part)
     return f"theory, {name}" if 0 < len(name) < SHORT else "theory"
-
-
-def _word(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-import json
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from mesokit.case import toml
 from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import outside_parts
 from mesokit.errors import CaseError, RunError
-from mesokit.io.atomic import write_text
 from mesokit.processes.cores import usable_cores
 from mesokit.processes.world import world
+from mesokit.run.opened import RunFiles
 from mesokit.seam.method import summary_of
+from mesokit.study import definition
 from mesokit.study import table as tables
-from mesokit.study.axes import MOST, Axis
+from mesokit.study.axes import Axis
 from mesokit.study.between import theory_between
 from mesokit.study.cluster import Cluster
+from mesokit.study.definition import CASE, FILE, seeds_of
 from mesokit.study.dependence import Fitted, Theory, fitted
 from mesokit.study.drive import StudyReporter, Workers, drive, reporter_for
 from mesokit.study.local import Here, Processes
@@ -30,17 +30,11 @@ from mesokit.study.names import called
 from mesokit.study.numbers import numbers, words_of
 from mesokit.study.plan import Base, Planned, by_point, checked, make, planned, short_names
 from mesokit.study.plot import curves_of, drawable, find_rows, plot, several
-
-if TYPE_CHECKING:
-    from mesokit.run.opened import RunFiles
-    from mesokit.study.table import Pooled
-
-FILE, CASE = "study.toml", "case.toml"
-HEAD = "# A study of mesokit: what it varies; its case lies in this folder, its runs in runs/.\n"
+from mesokit.study.table import Pooled
 
 
 class Study(Shown):
-    """The same case for several values and seeds: a folder of runs, and what they say together.
+    """The same case for several values and seeds: a folder of runs, and their common results.
 
     Parameters
     ----------
@@ -95,7 +89,7 @@ class Study(Shown):
         base = Base.of(case, settings)
         self.path = Path(output)
         axes = Axis.from_mapping(vary) if isinstance(vary, Mapping) else list(vary or ())
-        self._set(base, axes, _seeds(seeds, base))
+        self._set(base, axes, seeds_of(seeds, base))
         self._make(write)
 
     @classmethod
@@ -114,30 +108,9 @@ class Study(Shown):
             raise RunError(f"{path}: holds no study; expected a file {FILE} in it")
         self = cls.__new__(cls)
         try:
-            data = toml.parse(toml.read(file))
-            for key in data:
-                if key not in ("case", "seeds", "vary", "folder", "set"):
-                    known = ["case", "seeds", "vary", "set"]
-                    raise CaseError(
-                        f"{key}: unknown key{nearest(key, known)} (expected {one_of(known)})"
-                    )
-            given = data.get("case")
-            if not isinstance(given, str):
-                raise CaseError(f"case = {show(given)}: expected the name of a case file")
-            vary = data.get("vary", [])
-            if not isinstance(vary, list):
-                raise CaseError("vary: expected [[vary]], in double brackets")
-            axes = [Axis.from_table(each) for each in vary]
-            settings = data.get("set", {})
-            if not isinstance(settings, Mapping):
-                raise CaseError(f"set = {show(settings)}: expected a table [set]")
-            base = Base.of(file.parent / given, dict(_settings(settings)))
-            folder = data.get("folder", str(base.folder))
-            if not isinstance(folder, str):
-                raise CaseError(f"folder = {show(folder)}: expected the name of a folder")
-            base.folder = Path(folder)
+            found = definition.read(file)
             self.path = path if path.is_dir() else Path(output or path.stem)
-            self._set(base, axes, _seeds(data.get("seeds", 1), base))
+            self._set(*found)
             if not path.is_dir():
                 self._make(write)
         except CaseError as error:
@@ -149,14 +122,10 @@ class Study(Shown):
         self.runs: list[Planned] = planned(axes, seeds, self.path)
 
     def _make(self, write: bool = True) -> None:
-        """The folder with all runs in it; those that are there are kept.
+        """Make the folder and all runs that are not there; without `write` only check.
 
-        Without `write` it is only checked that it can be made.
-
-        Raises RunError where a study lies that has runs which this one has not.
+        Raises RunError if the folder has a study with other runs.
         """
-        if self.path.is_dir() and any(self.path.iterdir()) and not (self.path / FILE).exists():
-            raise RunError(f"{self.path}: folder is not empty, and holds no study")
         if (self.path / FILE).exists():
             ours = {run.path for run in self.runs}
             for run in Study.open(self.path).runs:
@@ -166,21 +135,12 @@ class Study(Shown):
                         f"{run.path.relative_to(self.path)}; name its values as well, or choose "
                         "another output"
                     )
+        elif self.path.is_dir() and any(self.path.iterdir()):
+            raise RunError(f"{self.path}: folder is not empty, and holds no study")
         cases = checked(self.runs, self.base)
-        if not write:
-            return
-        make(cases)
-        lines = [HEAD, f"case = {json.dumps(CASE)}\n"]
-        lines += [f"folder = {json.dumps(str(self.base.folder))}  # of files that the case names\n"]
-        lines += [f"seeds = {json.dumps(self.seeds)}\n"]
-        tables = [("[[vary]]", axis.table()) for axis in self.axes]
-        if self.base.settings:
-            tables.insert(0, ("[set]", self.base.settings))
-        for head, rows in tables:
-            entries = (f"{json.dumps(k)} = {json.dumps(v)}\n" for k, v in rows.items())
-            lines += [f"\n{head}\n", *entries]
-        write_text(self.path / CASE, self.base.text)
-        write_text(self.path / FILE, "".join(lines))
+        if write:
+            make(cases)
+            definition.write(self.path, self.base, self.axes, self.seeds)
 
     @property
     def keys(self) -> list[str]:
@@ -188,12 +148,10 @@ class Study(Shown):
         return [key for axis in self.axes for key in axis.keys]
 
     def warnings(self) -> list[str]:
-        """What to mind of the cases, each once, and at which point where not at all."""
-        points = [group[0] for group in by_point(self.runs)]
+        """Warnings of the cases, each once, with the first point unless it holds at all points."""
         found: dict[str, list[Planned]] = {}
-        for run in points:
-            case = run.files.case
-            for text in summary_of(case, 1).warnings:
+        for run in (points := [group[0] for group in by_point(self.runs)]):
+            for text in summary_of(run.files.case, 1).warnings:
                 found.setdefault(text, []).append(run)
         return [
             text if len(runs) == len(points) else f"{runs[0].path.parent.name}: {text}"
@@ -201,22 +159,25 @@ class Study(Shown):
         ]
 
     def require(self, x: str | None, y: str) -> None:
-        """Raise CaseError if a picture cannot be, as far as that is known before the runs."""
+        """Raise CaseError for a picture that cannot be drawn, as known before the runs."""
         self.key(x) if x else None
-        labels = [o.label for o in self.base.case(self.runs[0].point, self.runs[0].seed).observe]
+        labels = [observable.label for observable in self._case.observe]
         for one in several(y):
             if not any(label.startswith(one) or one.startswith(label) for label in labels):
                 name = one.partition(".")[0]
-                known = f"expected {one_of(labels)}{nearest(name, labels)}"
-                raise CaseError(
-                    f"{one}: no observable {show(name)}; {known}"
-                    if labels
-                    else f"{one}: the case measures nothing"
+                why = (
+                    f"no observable {show(name)}; expected {one_of(labels)}{nearest(name, labels)}"
                 )
+                raise CaseError(f"{one}: {why if labels else 'the case measures nothing'}")
+
+    @property
+    def _case(self) -> Case:
+        """The case of the first run."""
+        return self.base.case(self.runs[0].point, self.runs[0].seed)
 
     @property
     def ended(self) -> bool:
-        """Whether all runs have their results."""
+        """True if all runs have their results."""
         return all(run.ended for run in self.runs)
 
     def run(
@@ -253,8 +214,7 @@ class Study(Shown):
         if not all(file.exists() for file in made):  # not written yet, or removed
             self._make()
         workers = self._workers(jobs, threads, cluster, options)
-        failed = drive(self.runs, workers, reporter)
-        if failed:
+        if failed := drive(self.runs, workers, reporter):
             run, why = failed[0]
             more = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""
             raise RunError(f"{run.path}: {why}{more}")
@@ -262,8 +222,7 @@ class Study(Shown):
     def _workers(
         self, jobs: int | None, threads: int, cluster: str | None, options: Any
     ) -> Workers:
-        case = self.base.case(self.runs[0].point, self.runs[0].seed)
-        modules = sorted({part["class"].partition(":")[0] for part in outside_parts(case)})
+        modules = sorted({part["class"].partition(":")[0] for part in outside_parts(self._case)})
         places = jobs or max(1, usable_cores() // threads)
         if "__main__" in modules:
             if cluster or jobs not in (None, 1):
@@ -309,14 +268,13 @@ class Study(Shown):
         logarithmic axis of values that are not above zero.
         """
         key = self.key(x)
-        case = self.base.case(self.runs[0].point, self.runs[0].seed)
         look = {"fit": fit, "between": self.theory_between} | look
-        return plot(self.table(), self.axes, key, y, called(case, key), **look)
+        return plot(self.table(), self.axes, key, y, called(self._case, key), **look)
 
     def theory_between(
         self, rows: Sequence[Pooled], keys: Sequence[str], log: bool
     ) -> Theory | None:
-        """What is expected of a number between its points, None where that cannot be had."""
+        """Expectation of a number between its points, None if it cannot be computed."""
         return theory_between(self.base, self.runs, rows, keys, log)
 
     def fit(self, x: str, y: str, kind: str) -> list[Fitted]:
@@ -331,22 +289,7 @@ class Study(Shown):
 
     def lines(self) -> list[str]:
         """The table in words, point after point."""
-        names = dict(zip(self.keys, short_names(self.keys), strict=True))
-        found, last = [], None
-        for row in self.table():
-            if row.point != last:
-                point = [f"{names[key]} = {value}" for key, value in row.point.items()]
-                runs = f"{row.runs} runs" if row.runs > 1 else "1 run"
-                found.append(f"{', '.join(point) or 'all'} ({runs})")
-                last = row.point
-            agree = ""
-            if row.seeds is not None:
-                agree = (
-                    f"; seeds: chi-square {row.seeds.chi2:.2g} of {row.seeds.dof}, "
-                    f"p = {row.seeds.p:.2g}"
-                )
-            found.append(f"  {row.observable}: {row.number}{agree}")
-        return found
+        return tables.lines(self.table(), self.keys)
 
     def save_pictures(self, ending: str = ".png", **look: Any) -> list[Path]:
         """Draw every number that has an error bar against the first key that is varied.
@@ -374,8 +317,8 @@ class Study(Shown):
         from mesokit.report.finish.origin import Origin
 
         figure, names = self.plot(x, y, fit, **look), short_names(self.keys)
-        title = self.base.case(self.runs[0].point, self.runs[0].seed).title
-        figure.origin = Origin(", ".join(filter(None, [title, f"study {self.path.name}"])))
+        origin = filter(None, [self._case.title, f"study {self.path.name}"])
+        figure.origin = Origin(", ".join(origin))
         table = self.table()
         number = "-and-".join(find_rows(table, name)[0].name for name in several(y))
         file = f"{number}-against-{names[self.keys.index(self.key(x))]}{ending}"
@@ -409,11 +352,11 @@ class Study(Shown):
             return name
         if name in names:
             return names[name]
-        known = [*names, *self.keys]
-        raise CaseError(f"{name}: not varied; expected {one_of(list(names))}{nearest(name, known)}")
+        hint = nearest(name, [*names, *self.keys])
+        raise CaseError(f"{name}: not varied; expected {one_of(list(names))}{hint}")
 
     def record(self) -> dict[str, Any]:
-        """What `mesokit info --json` prints: plain numbers and texts."""
+        """The record that `mesokit info --json` prints: plain numbers and texts."""
         return {
             "study": str(self.path),
             "ended": self.ended,
@@ -443,10 +386,8 @@ class Study(Shown):
         return f"{sum(run.ended for run in self.runs)} of {len(self)} runs have ended"
 
     def __repr__(self) -> str:
-        lines = [f"mesokit study {self.path}: {self._state()}"]
-        lines += [f"  {axis.keys[0]}: {len(axis.values)} values" for axis in self.axes]
-        lines += [f"  {len(self.seeds)} seeds"]
-        return "\n".join(lines)
+        varied = "".join(f"  {axis.keys[0]}: {len(axis.values)} values\n" for axis in self.axes)
+        return f"mesokit study {self.path}: {self._state()}\n{varied}  {len(self.seeds)} seeds"
 
 
 def require_one_process() -> None:
@@ -454,26 +395,3 @@ def require_one_process() -> None:
     ranks = world().size
     if ranks > 1:
         raise CaseError(f"Study: not on {ranks} ranks; expected one process, no mpiexec")
-
-
-def _settings(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Values of [set] by their key paths; `run.steps = 9` without quotes is a table in a table."""
-    for key, value in table.items():
-        if isinstance(value, Mapping) and "." not in key:
-            yield from ((f"{key}.{inner}", each) for inner, each in value.items())
-        else:
-            yield key, value
-
-
-def _seeds(given: Any, base: Base) -> list[int]:
-    """Which seeds: so many from that of the case on, or as listed."""
-    if isinstance(given, int) and not isinstance(given, bool) and given >= 1:
-        if given > MOST:
-            raise CaseError(f"seeds = {given}: expected at most {MOST}")
-        run = base.data.get("run")
-        first = run.get("seed", 1) if isinstance(run, Mapping) else 1
-        return [first + i for i in range(given)] if isinstance(first, int) else [1]
-    whole = isinstance(given, Sequence) and all(type(seed) is int for seed in given)
-    if not whole or not given or len(set(given)) < len(given):
-        raise CaseError(f"seeds = {show(given)}: expected how many, or a list of different ones")
-    return list(given)

@@ -1,4 +1,4 @@
-"""What the runs of a study say together: every compared number, from the samples of all seeds."""
+"""Table of a study: every compared number at every point, from the samples of all seeds."""
 
 import csv
 import math
@@ -13,7 +13,12 @@ from mesokit.io.atomic import replacing
 from mesokit.io.optional import package
 from mesokit.seam.result import Comparison
 from mesokit.statistics import ChiSquare, chi_square
-from mesokit.study.plan import Planned, by_point, pooled_numbers
+from mesokit.study.plan import Planned, by_point, pooled_numbers, short_names
+
+NUMBERS = [  # of a Comparison, in the order of the table
+    "measured", "error", "expected", "deviation", "percent", "approximate", "steady",
+    "lower_bound", "unit",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -49,34 +54,23 @@ class Pooled:
 
     def row(self) -> dict[str, Any]:
         """As a row of a table."""
-        number, seeds = self.number, self.seeds
         return {
             **self.point,
             "result": self.observable,
             "key": self.key,
-            "measured": number.measured,
-            "error": number.error,
-            "expected": number.expected,
-            "deviation": number.deviation,
-            "percent": number.percent,
-            "approximate": number.approximate,
-            "steady": number.steady,
-            "lower_bound": number.lower_bound,
-            "unit": number.unit,
+            **{name: getattr(self.number, name) for name in NUMBERS},
             "runs": self.runs,
             "scatter": self.scatter,
-            "chi2": seeds.chi2 if seeds else math.nan,
-            "p": seeds.p if seeds else math.nan,
-            "note": number.note,
+            "chi2": self.seeds.chi2 if self.seeds else math.nan,
+            "p": self.seeds.p if self.seeds else math.nan,
+            "note": self.number.note,
         }
 
 
 def table(runs: Iterable[Planned]) -> list[Pooled]:
     """Every compared number at every point, from the runs that have ended."""
-    found: list[Pooled] = []
-    for group in by_point([run for run in runs if run.ended]):
-        found += _of_point(group)
-    return found
+    groups = by_point([run for run in runs if run.ended])
+    return [row for group in groups for row in _of_point(group)]
 
 
 def _of_point(runs: Sequence[Planned]) -> Iterator[Pooled]:
@@ -96,11 +90,11 @@ def _of_point(runs: Sequence[Planned]) -> Iterator[Pooled]:
 def scattered(
     each: Sequence[Comparison], weights: Sequence[float]
 ) -> tuple[float, ChiSquare | None]:
-    """How one number of several runs scatters: the standard error of its mean, and chi-square.
+    """Scatter of one number over several runs: standard error of its mean, and chi-square.
 
-    Weights of the mean are the lengths of the runs. The error bars of the runs are estimates that
-    run low where the value does, and would pull the mean. Chi-square is about the mean that is
-    weighted by them, which makes it least.
+    Weights of the mean are the lengths of the runs. Error bars of runs are estimates that are low
+    where the value is, and would bias the mean. Chi-square is about the mean that is weighted by
+    them, which makes it least.
 
     >>> runs = [Comparison("slip", 1.0, 0.3, 0.9), Comparison("slip", 2.0, 0.4, 0.9)]
     >>> spread, seeds = scattered(runs, [100, 100])
@@ -120,6 +114,24 @@ def scattered(
     return spread, chi_square(values, np.full(n, nearest), errors, fitted=1)
 
 
+def lines(rows: Iterable[Pooled], keys: Sequence[str]) -> list[str]:
+    """The rows in words, point after point; `keys` are varied."""
+    names = dict(zip(keys, short_names(keys), strict=True))
+    found, last = [], None
+    for row in rows:
+        if row.point != last:
+            point = [f"{names[key]} = {value}" for key, value in row.point.items()]
+            runs = f"{row.runs} runs" if row.runs > 1 else "1 run"
+            found.append(f"{', '.join(point) or 'all'} ({runs})")
+            last = row.point
+        line = f"  {row.observable}: {row.number}"
+        if row.seeds is not None:
+            chi2, dof, p = row.seeds.chi2, row.seeds.dof, row.seeds.p
+            line += f"; seeds: chi-square {chi2:.2g} of {dof}, p = {p:.2g}"
+        found.append(line)
+    return found
+
+
 def dataframe(rows: Sequence[Pooled]) -> Any:
     """As a pandas.DataFrame, a row for each number at each point."""
     return package("pandas", "data frames", "tables").DataFrame([row.row() for row in rows])
@@ -128,19 +140,9 @@ def dataframe(rows: Sequence[Pooled]) -> Any:
 def write(rows: Sequence[Pooled], path: str | Path) -> Path:
     """As a CSV file, where a number that is not determined has an empty field. Raises RunError."""
     names = list(dict.fromkeys(name for row in rows for name in row.row()))
-    with (
-        replacing(path) as temporary,
-        temporary.open("w", newline="", encoding="utf-8") as file,
-    ):
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, names)
         writer.writeheader()
-        writer.writerows(_fields(row.row()) for row in rows)
+        for row in rows:  # nan is the only value that differs from itself
+            writer.writerow({k: v if v == v else "" for k, v in row.row().items()})
     return Path(path)
-
-
-def _fields(row: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: "" if _unknown(value) else value for name, value in row.items()}
-
-
-def _unknown(value: Any) -> bool:
-    return isinstance(value, float) and math.isnan(value)

@@ -1,4 +1,4 @@
-"""What a worker does: carry one run of a study to its end."""
+"""A worker, which carries one run of a study after another to its end."""
 
 import contextlib
 import importlib
@@ -22,29 +22,27 @@ NOTE_SECONDS = 1.0  # between two notes of how far a run has come
 
 
 class Note(Reporter):
-    """Writes the progress of a run to a file of its folder, which the study reads."""
+    """Writes the progress of a run to a file in its folder, for the study."""
 
     def __init__(self, file: Path) -> None:
         super().__init__(quiet=True)
         self.file, self.noted = file, 0.0
 
     def update(self, step: int) -> None:
-        """Note the step, if it is time."""
         super().update(step)
         if (now := time.monotonic()) >= self.noted + NOTE_SECONDS:
             self.noted = now
-            with contextlib.suppress(RunError):  # a run does not end because this cannot be told
+            with contextlib.suppress(RunError):  # a run goes on without this file
                 write_text(self.file, str(step))
 
     def finish(self) -> None:
-        """The run is over."""
         self.file.unlink(missing_ok=True)
 
 
 def carry(path: str, threads: int = 1, modules: Sequence[str] = ()) -> str:
     """Carry the run in a folder to its end, from its last checkpoint.
 
-    `modules` define parts of its case. Returns nothing, or why it did not come to the end.
+    `modules` define parts of its case. Returns "", or why it did not end.
     """
     try:
         with catching(_stop):
@@ -62,14 +60,14 @@ def carry(path: str, threads: int = 1, modules: Sequence[str] = ()) -> str:
 
 
 def _stop(by: signal.Signals) -> None:
-    """A signal that comes before the run has begun."""
+    """Stop at a signal before the run has begun."""
     raise Stopped(by, f"stopped before the start by {by.name}")
 
 
 def serve(threads: int, modules: Sequence[str]) -> None:
-    """Carry the runs that come on standard input, a folder a line; answer each with a line.
+    """Carry out runs from standard input, a folder in each line, and answer each with a line.
 
-    If the study has ended, the run in hand ends at a checkpoint.
+    If the study has ended, the present run ends at a checkpoint.
     """
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what others print is no answer

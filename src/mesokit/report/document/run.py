@@ -7,7 +7,7 @@ from typing import Any, Protocol
 from mesokit.case.case import Case
 from mesokit.errors import MesokitError
 from mesokit.io.atomic import write_text
-from mesokit.io.pooled import pooled_words
+from mesokit.io.record_words import pooled_words
 from mesokit.io.run_directory import RunDirectory
 from mesokit.report.document.pictures import figures, films_of, pictures_of_flow
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when

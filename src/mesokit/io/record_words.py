@@ -1,6 +1,8 @@
-"""How several ranks have shared the work of a run, in numbers and in words."""
+"""The work of ranks of a run, and texts about shared work and merged runs from records."""
 
-from collections.abc import Iterator, Mapping, Sequence
+import shlex
+from collections.abc import Iterator, Mapping
+from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -8,10 +10,9 @@ WAITING = "wait"  # the stage of a step in which a rank does nothing
 
 
 def shared_work(ranks: Any, engine: Any) -> dict[str, Any]:
-    """How long each stage took, least, median and most over ranks, and how even the work was.
+    """Seconds of each stage, least, median and most over ranks, and the imbalance; {} on one rank.
 
-    `imbalance` is the most work of a rank, which is all but waiting, over the mean. Nothing where
-    there is one rank.
+    `imbalance` is the largest work of a rank, without waiting, over the mean.
     """
     if ranks.size == 1:
         return {}
@@ -19,18 +20,17 @@ def shared_work(ranks: Any, engine: Any) -> dict[str, Any]:
     work = [sum(s for stage, s in one.items() if stage != WAITING) for one in every]
     mean = sum(work) / len(work)
     return {
-        "stages": {stage: _spread([one[stage] for one in every]) for stage in every[0]},
+        "stages": {
+            stage: {"least": min(spent), "median": median(spent), "most": max(spent)}
+            for stage, spent in ((stage, [one[stage] for one in every]) for stage in every[0])
+        },
         "imbalance": max(work) / mean if mean else 1.0,
         "balance": engine.balance(),
     }
 
 
-def _spread(seconds: Sequence[float]) -> dict[str, float]:
-    return {"least": min(seconds), "median": median(seconds), "most": max(seconds)}
-
-
 def work_words(provenance: Mapping[str, Any]) -> Iterator[str]:
-    """Lines of what a run keeps as `shared_work`, none of a run on one rank.
+    """Lines about `shared_work` of a record, none for one rank.
 
     >>> stages = {"sweep": {"least": 1.0, "median": 1.5, "most": 2.0}}
     >>> shared = {"stages": stages, "imbalance": 1.25, "balance": {"cuts moved": 3}}
@@ -54,3 +54,23 @@ def work_words(provenance: Mapping[str, Any]) -> Iterator[str]:
 
 def _number(value: Any) -> str:
     return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+def pooled_words(record: Mapping[str, Any]) -> str:
+    """The number of merged runs and their seeds, "" for the record of any other run.
+
+    >>> pooled_words({"merged": [{"run": "a", "seed": 1}, {"run": "b", "seed": 4}]})
+    'pooled from 2 runs, seeds 1 and 4'
+    >>> pooled_words({"seed": 1})
+    ''
+    """
+    seeds = [str(run["seed"]) for run in record.get("merged") or ()]
+    if not seeds:
+        return ""
+    return f"pooled from {len(seeds)} runs, seeds {', '.join(seeds[:-1])} and {seeds[-1]}"
+
+
+def merge_again(record: Mapping[str, Any], output: Path) -> str:
+    """The command that merges the same runs into another folder."""
+    runs = [str(run["run"]) for run in record["merged"]]
+    return shlex.join(["mesokit", "merge", *runs, "--output", f"{output}-again"])
