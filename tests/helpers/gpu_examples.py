@@ -141,7 +141,6 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     potentials.central: lambda p, d: (1.0,),
     potentials.breaks: lambda p, d: (1.0,),
     potentials.angular: lambda p, d: (1.0,),
-    solids.across: lambda p, d: (),
     solids.exposed: lambda p, d: (),
     solids.touches: lambda p, d: ((), vec(d), vec(d), vec(d), 1.0),
     solids.leaps: lambda p, d: (vec(d),),
