@@ -8,12 +8,7 @@ from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.spheres.common.expected.answers import answers
 from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
-from mesokit.method.spheres.common.start.first_state import (
-    ARRAYS,
-    RUN,
-    first_state,
-    starts,
-)
+from mesokit.method.spheres.common.start.first_state import ARRAYS, RUN, first_state, starts
 from mesokit.method.spheres.common.start.protocol import Started
 from mesokit.method.spheres.hard.checks import check
 from mesokit.method.spheres.hard.engine.engine import EventDriven

@@ -48,9 +48,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     }  # fmt: skip
     rows.append(("run time", duration_text(max(seconds, 0.1)), "estimate: one thread"))
     rows += _beside(case, flight, time, numbers)
-    rows += [
-        ("memory", size_text(memory), "estimate"),
-    ]
+    rows += [("memory", size_text(memory), "estimate")]
     if stored:
         rows.append(("trajectory", size_text(stored), "estimate"))
     warnings = (*run_warnings(case, memory, stored), *_warnings(case, rate))

@@ -17,11 +17,7 @@ from mesokit.method.spheres.soft.engine.contact.force import OWN, Contact
 from mesokit.method.spheres.soft.engine.groups import Motion
 from mesokit.method.spheres.soft.engine.system import Given, Others
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw, damping_ratio
-from mesokit.method.spheres.soft.scales import (
-    fastest_followed,
-    speed_of_collision,
-    timestep_of,
-)
+from mesokit.method.spheres.soft.scales import fastest_followed, speed_of_collision, timestep_of
 from mesokit.potential.protocol import central
 
 Array = NDArray[np.float64]

@@ -9,12 +9,7 @@ from mesokit.method.spheres.common.expected.answers import answers
 from mesokit.method.spheres.common.expected.neighbours import NeighboursOfSpheres
 from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
-from mesokit.method.spheres.common.start.first_state import (
-    ARRAYS,
-    RUN,
-    first_state,
-    starts,
-)
+from mesokit.method.spheres.common.start.first_state import ARRAYS, RUN, first_state, starts
 from mesokit.method.spheres.common.start.protocol import Started
 from mesokit.method.spheres.common.velocity_memory import VelocityMemory
 from mesokit.method.spheres.soft.checks import check

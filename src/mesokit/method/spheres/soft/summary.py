@@ -56,9 +56,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     told = f"estimate: {cores} thread{'s' * (cores > 1)}{few}"
     rows.append(("run time", duration_text(max(seconds, 0.1)), told))
     rows += _beside(case, steps, of_core, numbers)
-    rows += [
-        ("memory", size_text(memory), "estimate"),
-    ]
+    rows += [("memory", size_text(memory), "estimate")]
     if stored:
         rows.append(("trajectory", size_text(stored), "estimate"))
     warnings = (*run_warnings(case, memory, stored), *_warnings(case, numbers))

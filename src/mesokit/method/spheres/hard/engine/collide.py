@@ -123,9 +123,7 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
         return
     lever_i, lever_j = scaled(-state[i, RADIUS], n), scaled(state[j, RADIUS], n)
     u = added_scaled(
-        surface_velocity(spheres, i, v_i, lever_i),
-        -1.0,
-        surface_velocity(spheres, j, v_j, lever_j),
+        surface_velocity(spheres, i, v_i, lever_i), -1.0, surface_velocity(spheres, j, v_j, lever_j)
     )
     masses = 1.0 / body[i, MASS] + 1.0 / body[j, MASS]
     levers = turning(state, body, i) + turning(state, body, j)

@@ -25,12 +25,7 @@ from mesokit.method.spheres.hard.engine.groups import (
     TIME,
 )
 from mesokit.method.spheres.hard.engine.lists import find, link, renew
-from mesokit.method.spheres.hard.engine.motion import (
-    bring_to,
-    place_at,
-    put_entries,
-    velocity_at,
-)
+from mesokit.method.spheres.hard.engine.motion import bring_to, place_at, put_entries, velocity_at
 from mesokit.method.spheres.hard.engine.predict import predict
 from mesokit.method.spheres.hard.engine.queue import CURRENT, SIZE, insert, next_event, remove
 from mesokit.scalar.intrinsics import floor, with_item

@@ -50,11 +50,7 @@ class SpringDashpot(ContactLaw):
         le=1,
     )
     contact_time: float | None = param(
-        None,
-        doc="how long a collision takes (0.01 unless said)",
-        unit="time",
-        ge=1e-9,
-        le=1e9,
+        None, doc="how long a collision takes (0.01 unless said)", unit="time", ge=1e-9, le=1e9
     )
     stiffness: float | None = param(
         None, doc="of the spring, in place of the contact time", unit="mass/time^2", gt=0, le=1e15

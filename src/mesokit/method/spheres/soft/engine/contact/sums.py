@@ -47,11 +47,7 @@ def _own(lists: Lists, number: Pairs) -> tuple[Pairs, Any]:
 def counted(vector, scale):
     """A vector in whole quanta: cut off toward zero, so that what the other sphere has is exactly
     minus this."""
-    return (
-        np.int64(vector[0] * scale),
-        np.int64(vector[1] * scale),
-        np.int64(vector[2] * scale),
-    )
+    return (np.int64(vector[0] * scale), np.int64(vector[1] * scale), np.int64(vector[2] * scale))
 
 
 @scalar
