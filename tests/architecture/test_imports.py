@@ -65,8 +65,9 @@ ROWS = {
     "method/mpcd/observe/": (*MPCD, "observe"),
     "method/spheres/": SPHERES,
     "method/spheres/hard/engine/system.py": (*SPHERES, "processes.signals"),
-    "method/spheres/common/start/from_file.py": (*SPHERES, "io.snapshot_file"),
-    "method/spheres/common/start/from_run.py": (*SPHERES, "io.earlier_spheres"),
+    "method/spheres/common/start/from_file.py": (
+        *SPHERES, "io.earlier_spheres", "io.snapshot_file",
+    ),
     "method/flock/": (
         "case", "errors", "geometry", "io", "loops", "method.flock", "observe", "processes.cores",
         "scalar", "seam", "statistics", "theory",

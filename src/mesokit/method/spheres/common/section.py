@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mesokit.method.spheres.hard.collision.protocol import SphereCollision
     from mesokit.method.spheres.hard.heating.protocol import Heating
 
+KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 USUAL_FRACTION = 0.3  # of the box that spheres fill, unless anything is said
 MOST_PARTICLES = 2**31 - 1  # numbers of random words are 32-bit
 AMOUNTS = ("number", "density", "packing_fraction")

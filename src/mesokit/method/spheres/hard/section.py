@@ -8,8 +8,6 @@ from mesokit.method.spheres.hard.collision import SphereCollision
 from mesokit.method.spheres.hard.collision.hard import HardCollision
 from mesokit.method.spheres.hard.heating import Heating
 
-KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
-
 
 @component
 class HardSpheres(Spheres):
@@ -57,8 +55,8 @@ class HardSpheres(Spheres):
         return self.kT if self.collision.rough else 0.0
 
 
-class Sections:
-    """What a case of event-driven dynamics has beside the sections of every case."""
+class HardSections:
+    """Sections of a case of event-driven dynamics beside those of every case."""
 
     spheres: HardSpheres = param(HardSpheres(), doc="the spheres")
     walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")

@@ -9,6 +9,7 @@ import numpy as np
 
 from mesokit.case.case import Case
 from mesokit.method.spheres.common.made import made
+from mesokit.method.spheres.common.near import near_pairs
 from mesokit.method.spheres.common.start.first_state import given_state
 from mesokit.method.spheres.common.start.protocol import Array, Placed
 from mesokit.method.spheres.common.wall.surfaces import room_of
@@ -80,18 +81,8 @@ def _head_on(case: Case, velocities: Array) -> float:
 
 
 def _largest_overlap(case: Case, known: Placed) -> float:
-    """Of two spheres, 0 where none overlap."""
-    from scipy.spatial import cKDTree
-
+    """The largest overlap of two spheres, 0 where none overlap."""
     diameters = made(case).diameters if known.diameters is None else known.diameters
-    size = np.array(case.box.size, float)
-    around, closed = np.where(room_of(case).closed, 3 * size, size), room_of(case).closed
-    places = np.where(closed, known.positions, np.mod(known.positions, size))
-    places = np.where(places < around, np.maximum(places, 0.0), 0.0)
-    pairs = cKDTree(places, boxsize=around).query_pairs(
-        float(diameters.max()), output_type="ndarray"
-    )
-    separation = places[pairs[:, 0]] - places[pairs[:, 1]]
-    separation -= around * np.rint(separation / around)
-    apart = 0.5 * (diameters[pairs[:, 0]] + diameters[pairs[:, 1]])
-    return float(np.max(apart - np.linalg.norm(separation, axis=1), initial=0.0))
+    size, closed = np.array(case.box.size, float), np.array(room_of(case).closed)
+    pairs, distances = near_pairs(known.positions, size, closed, float(diameters.max()))
+    return float(np.max(0.5 * diameters[pairs].sum(axis=1) - distances, initial=0.0))

@@ -15,7 +15,6 @@ from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 from mesokit.method.spheres.soft.pair.spring_dashpot import SpringDashpot
 from mesokit.method.spheres.soft.thermostat import SoftThermostat
 
-KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 CONTACT_SKIN, POTENTIAL_SKIN, WIDEST_SKIN = 0.1, 0.16, 1.0  # of the largest reach of two
 FITS = 0.98  # of the largest skin with which a box has no sphere twice on a list
 ALONE = 0.1  # others within reach and skin: where there are so few, a wide skin costs nothing
@@ -124,8 +123,8 @@ class SoftSpheres(Spheres):
         return float(max(min(wanted, widest), CONTACT_SKIN * reach))
 
 
-class Sections:
-    """What a case of soft spheres has beside the sections of every case."""
+class SoftSections:
+    """Sections of a case of soft spheres beside those of every case."""
 
     spheres: SoftSpheres = param(SoftSpheres(), doc="the spheres")
     walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")
