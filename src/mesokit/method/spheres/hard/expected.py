@@ -22,7 +22,7 @@ from mesokit.seam.engine import Array, Integers
 
 
 def hard_equilibrium(case: Case) -> Equilibrium | None:
-    """None where collisions take energy, or baths and walls of two temperatures are there."""
+    """Equilibrium, None where collisions take energy or temperatures of baths and walls differ."""
     section = case.spheres
     if not (section.collision.elastic and still_walls(case) and _keep_energy(case)):
         return None

@@ -11,7 +11,7 @@ from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 
 
 def soft_equilibrium(case: Case) -> Equilibrium | None:
-    """None where contacts take energy. Without a bath the temperature is known afterwards alone:
+    """Equilibrium, None where contacts take energy; its temperature is nan without a bath, since
     forces take a part of the energy of the start."""
     section = case.spheres
     touching = isinstance(section.pair, ContactLaw)

@@ -7,7 +7,6 @@ import numpy as np
 
 from mesokit.method.spheres.common.wall.rows import MOVES, vibration
 from mesokit.method.spheres.hard.collision.protocol import restitution, step_of_energy
-from mesokit.method.spheres.hard.engine.flights import note_flight
 from mesokit.method.spheres.hard.engine.groups import (
     ELASTIC,
     IN_A_ROW,
@@ -17,6 +16,8 @@ from mesokit.method.spheres.hard.engine.groups import (
     PAIRS,
     RADIUS,
     SPIN,
+    SQUARES,
+    TIMES,
     VELOCITY,
     VIRIAL,
     WALLS,
@@ -39,15 +40,6 @@ class Rules(NamedTuple):
     friction: float
     at_walls: Any
     seed: np.uint64
-
-
-class Contact(NamedTuple):
-    """Two surfaces that touch: inverse masses, radius and inverse inertia of each; of a wall 0."""
-
-    inverse: float
-    inverse_other: float
-    lever: float
-    lever_other: float
 
 
 @by_type
@@ -102,7 +94,10 @@ def surface_velocity(spheres, i, v, lever):
 
 @scalar
 def collide_pair(world, rules, spheres, tally, i, j, time):
-    """Two spheres touch: their velocities and spins change at once."""
+    """Two spheres touch, or are at a step of their potential: velocities and spins change at once.
+
+    Both are brought from the times of their last events to `time`.
+    """
     if spheres.number[j] < spheres.number[i]:
         i, j = j, i  # in order of their numbers
     state, body = spheres.state, spheres.body
@@ -136,10 +131,10 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
         tally.counts[ELASTIC] += 1
     normal, along = impulse_of(masses, levers, u, n, e, tangential, friction)
     total = added_scaled(along, normal, n)
-    # surfaces that grow push one another apart
+    # Surfaces of growing spheres move apart after a collision.
     growing = (state[i, RADIUS] + state[j, RADIUS]) * world.growth / masses
     total = added_scaled(total, 2.0 * growing, n)
-    # only what is along the surface turns: rounding must not
+    # The normal part exerts no torque; leaving it out avoids rounding errors.
     add_impulse(spheres, i, v_i, total, outer(lever_i, along))
     add_impulse(spheres, j, v_j, scaled(-1.0, total), outer(lever_j, scaled(-1.0, along)))
     note_flight(tally.flights, time - body[i, LAST])
@@ -149,9 +144,26 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     tally.sums[VIRIAL] += dot(apart, total)
 
 
+@by_type
+def note_flight(flights, lasted):
+    """Count a flight that has ended; the first one of a sphere is infinite, as it had no start."""
+    if len(flights) == 0:
+        return lambda flights, lasted: None
+
+    def note(flights, lasted):
+        if lasted < np.inf:
+            bins = len(flights.counts) - 1
+            place = min(lasted * flights.per_time, float(bins))
+            flights.counts[int(max(place, 0.0))] += 1
+            flights.sums[TIMES] += lasted
+            flights.sums[SQUARES] += lasted * lasted
+
+    return note
+
+
 @scalar
 def note_pause(world, tally, since):
-    """Count collisions in a row that come no time after the last of one of both."""
+    """Count collisions in a row for which the time since the last of a sphere counts as none."""
     tally.counts[IN_A_ROW] = tally.counts[IN_A_ROW] + 1 if since < world.instant else 0
 
 
@@ -159,12 +171,9 @@ def note_pause(world, tally, since):
 def over_step(masses, parting, energy):
     """The impulse along the line of centres at a step of the potential, which is lower by `energy`
     within; `masses` is the sum of inverse masses, `parting` the velocity along the line."""
-    square = parting * parting
-    if parting < 0.0:
-        after = square + 2.0 * energy * masses
-        return (-math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
-    after = square - 2.0 * energy * masses
-    return (math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
+    sign = -1.0 if parting < 0.0 else 1.0
+    after = parting * parting - sign * 2.0 * energy * masses
+    return (sign * math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
 
 
 @scalar
@@ -175,7 +184,7 @@ def turning(state, body, i):
 
 @scalar
 def collide_wall(world, rules, spheres, tally, i, w, time):
-    """A sphere touches a wall."""
+    """A sphere touches a wall at `time`, to which it is brought: it is reflected, or sent out."""
     state, body, walls = spheres.state, spheres.body, world.walls
     r, v = bring_to(world, spheres, i, time)
     _, n = outward(world, w, r)
@@ -191,7 +200,9 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
     else:
         lever = scaled(-state[i, RADIUS], n)
         u = added_scaled(surface_velocity(spheres, i, v, lever), -1.0, wall_velocity)
-        e, tangential = wall_restitution(rules, w, -dot(u, n)), rules.at_walls[w, 1]
+        e, tangential = rules.at_walls[w, 0], rules.at_walls[w, 1]
+        if e < 0.0:  # as of two spheres
+            e = restitution(rules.pair, -dot(u, n))
         note_pause(world, tally, time - body[i, LAST])
         if time - body[i, LAST] < world.lasting:
             e, tangential = 1.0, -1.0
@@ -209,15 +220,8 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
 
 
 @scalar
-def wall_restitution(rules, w, speed):
-    """The restitution of a wall, or that of two spheres if the wall has none."""
-    given = rules.at_walls[w, 0]
-    return given if given >= 0.0 else restitution(rules.pair, speed)
-
-
-@scalar
 def sent_out(rules, spheres, i, n, kT):
-    """A velocity of those that leave a wall in equilibrium: along the normal by their flux."""
+    """A random velocity of spheres that leave a wall in equilibrium, weighted by their flux."""
     number, hits = spheres.number[i], spheres.hits[i]
     a, b, c, d = words(Counter(rules.seed, np.uint64(hits)), THERMAL, number, 0)
     e, f, _, _ = words(Counter(rules.seed, np.uint64(hits)), THERMAL, number, 1)

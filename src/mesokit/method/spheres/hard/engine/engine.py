@@ -16,7 +16,7 @@ from mesokit.method.spheres.common.wall.surfaces import room_of, surface_rows
 from mesokit.method.spheres.hard.checks import wall_contacts
 from mesokit.method.spheres.hard.engine import groups
 from mesokit.method.spheres.hard.engine.collide import Rules
-from mesokit.method.spheres.hard.engine.system import Given, System
+from mesokit.method.spheres.hard.engine.system import HardSetup, HardSystem
 from mesokit.method.spheres.hard.heating.protocol import Heated
 from mesokit.method.spheres.hard.window import flight_bins, instant, window
 from mesokit.seam.engine import Array, Integers, Interrupted, State
@@ -31,7 +31,7 @@ class EventDriven(SphereEngine):
     each sphere's last event; its state in memory stays at the time of that event.
     """
 
-    system: System
+    system: HardSystem
 
     def __init__(self, case: Case, threads: int = 1, measures: Sequence[str] = ()) -> None:
         super().__init__(case)
@@ -41,7 +41,7 @@ class EventDriven(SphereEngine):
         self.seconds = {"events": 0.0}
         self._now: tuple[Array, Array] | None = None  # places and velocities, once computed
 
-    def _system(self) -> System:
+    def _system(self) -> HardSystem:
         section, made = self.case.spheres, self.made
         pair = section.collision
         rules = Rules(
@@ -51,8 +51,8 @@ class EventDriven(SphereEngine):
             wall_contacts(self.case),
             np.uint64(self.case.run.seed),
         )
-        return System(
-            Given(
+        return HardSystem(
+            HardSetup(
                 tuple(self.box),
                 room_of(self.case).closed,
                 section.gravity,

@@ -86,7 +86,7 @@ def find(world, lists, state, i, r):
                     cell = x * lists.cells[1] + y
                     if d == 3:
                         cell = cell * lists.cells[2] + z
-                    room &= take(world, lists, state, i, r, cell)
+                    room &= list_cell(world, lists, state, i, r, cell)
     return room
 
 
@@ -105,7 +105,7 @@ def wrapped(world, lists, k, cell):
 
 
 @scalar
-def take(world, lists, state, i, r, cell):
+def list_cell(world, lists, state, i, r, cell):
     """Put the spheres of a cell that may meet i on the lists; true if there was room."""
     most, j, room = lists.near.shape[1], lists.head[cell], True
     mine = state[i, RADIUS] * lists.widest + 2.0 * lists.shell

@@ -16,21 +16,21 @@ from mesokit.method.spheres.hard.engine.groups import (
 from mesokit.method.spheres.hard.engine.lists import time_to_leave
 from mesokit.method.spheres.hard.engine.motion import (
     entries,
-    meeting,
     of_column,
     of_row,
+    pair_event_time,
     place_at,
     velocity_at,
 )
 from mesokit.method.spheres.hard.engine.walls import time_to_wall
 from mesokit.scalar.jit import scalar
 
-EIGHT = 8  # lengths of lists are multiples of it
+EIGHT = 8  # contacts in a vector; lengths of lists are multiples of it
 
 
 @scalar
 def predict(world, rules, spheres, lists, queue, i, now):
-    """Find the next event of sphere i and store it; the caller puts it into the queue."""
+    """Store the next event of sphere i after the time `now`; the caller puts it into the queue."""
     state, number = spheres.state, spheres.number
     r, v = place_at(world, state, i, now), velocity_at(world, state, i, now)
     leaves = time_to_leave(world, lists, r, v, entries(lists.centre, i, 0, r))
@@ -62,19 +62,16 @@ def predict(world, rules, spheres, lists, queue, i, now):
 
 @scalar
 def collide_all(world, rules, state, lists, i, one, now, growth):
-    """When sphere i meets each of those on its list; growth 0 is to be said as that number.
-
-    They are gathered by columns first: the times then follow for eight of them at once, as vectors.
-    What lies beyond the end of the list is old and never read.
-    """
+    """Times of the events of sphere i with each sphere on its list; `growth` as a literal 0.0 where
+    spheres do not grow, for the compiler."""
     near, columns = lists.count[i], lists.columns
     # A gather from rows of states, one cache line each, into columns. Then the times of eight
-    # contacts are found at once, as vectors. Each state is that of the last event of its sphere;
-    # free flight gives the place now.
+    # contacts are found at once, as vectors; entries beyond the end of the list are old and never
+    # read. Each state is that of the last event of its sphere; free flight gives the place now.
     for a in range(near):
         j = lists.near[i, a]
         for k in range(WIDTH):
             columns[k, a] = state[j, k]
     for a in range((near + EIGHT - 1) & -EIGHT):
         other = of_column(columns, a, one.r)
-        lists.times[a] = meeting(world, rules.pair, one, other, now, growth)
+        lists.times[a] = pair_event_time(world, rules.pair, one, other, now, growth)

@@ -22,7 +22,6 @@ class Andersen(Heating):
 
     @property
     def bath_kT(self) -> float:
-        """Thermal energy of the bath."""
         return self.kT
 
     def act(self, heated: Heated, interval: float) -> None:

@@ -24,7 +24,6 @@ class Kicks(Heating):
 
     @property
     def white_noise(self) -> bool:
-        """It is: kicks have no memory."""
         return True
 
     def act(self, heated: Heated, interval: float) -> None:

@@ -12,7 +12,7 @@ from mesokit.errors import RunError
 from mesokit.method.spheres.common.engine import SphereEngine
 from mesokit.method.spheres.common.start.first_state import Started
 from mesokit.method.spheres.soft.engine import groups
-from mesokit.method.spheres.soft.engine.system import System
+from mesokit.method.spheres.soft.engine.system import SoftSystem
 from mesokit.method.spheres.soft.laws import given_of, surfaces_of
 from mesokit.method.spheres.soft.scales import timestep_of
 from mesokit.seam.engine import Array, Integers
@@ -23,7 +23,7 @@ UNSTABLE = 1000.0  # times the kT of a bath: no motion that a bath slows is so h
 class SoftEngine(SphereEngine):
     """Engine of soft spheres (`mesokit.seam.engine.Engine`) on the threads of one machine."""
 
-    system: System
+    system: SoftSystem
 
     def __init__(self, case: Case, threads: int = 1, measures: Sequence[str] = ()) -> None:
         super().__init__(case)
@@ -31,8 +31,8 @@ class SoftEngine(SphereEngine):
         self.system, self.surfaces = self._system(), surfaces_of(case)
         self.seconds = {"steps": 0.0}
 
-    def _system(self) -> System:
-        return System(given_of(self.case, self.made), self.threads)
+    def _system(self) -> SoftSystem:
+        return SoftSystem(given_of(self.case, self.made), self.threads)
 
     def start(self, placed: Started) -> None:
         super().start(placed)
