@@ -1,4 +1,4 @@
-"""What every single sphere of a case is: its diameter, mass, moment of inertia and kind."""
+"""Diameter, mass, moment of inertia and kind of each sphere of a case."""
 
 from typing import NamedTuple
 

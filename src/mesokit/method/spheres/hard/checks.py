@@ -15,7 +15,7 @@ from mesokit.method.spheres.common.checks import (
     check_spins,
     periodic_axes,
 )
-from mesokit.method.spheres.common.wall.surfaces import surface_rows
+from mesokit.method.spheres.common.walls import surface_rows
 from mesokit.seam.engine import Array
 
 WALLS = walls.Walls(("no-slip", "slip", "diffuse"), moving=True, contact=walls.CONTACT)

@@ -13,7 +13,7 @@ from mesokit.method.spheres.common.checks import (
     check_spins,
     periodic_axes,
 )
-from mesokit.method.spheres.common.wall.surfaces import other_walls, surface_rows
+from mesokit.method.spheres.common.walls import other_walls, surface_rows
 from mesokit.method.spheres.soft import scales
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 

@@ -12,7 +12,7 @@ from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.near import near_pairs
 from mesokit.method.spheres.common.start.first_state import given_state
 from mesokit.method.spheres.common.start.protocol import Array, Placed
-from mesokit.method.spheres.common.wall.surfaces import room_of
+from mesokit.method.spheres.common.walls import room_of
 from mesokit.method.spheres.soft import scales
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 

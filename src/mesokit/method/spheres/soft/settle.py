@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.made import Made
-from mesokit.method.spheres.common.wall.rows import AMPLITUDE, MOVES
-from mesokit.method.spheres.common.wall.surfaces import other_walls, room_of, surface_rows
+from mesokit.method.spheres.common.walls import AMPLITUDE, MOVES, other_walls, room_of, surface_rows
 from mesokit.method.spheres.soft.engine.groups import INVERSE, Motion
 from mesokit.method.spheres.soft.engine.system import SoftSetup, SoftSystem
 from mesokit.method.spheres.soft.laws import contact_of, others_of, three_axes

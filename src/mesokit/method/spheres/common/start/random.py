@@ -10,7 +10,7 @@ from mesokit.errors import CaseError
 from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.near import near_pairs
 from mesokit.method.spheres.common.start.protocol import Array, Placed, SphereStart
-from mesokit.method.spheres.common.wall.surfaces import other_walls, room_of, surface_rows
+from mesokit.method.spheres.common.walls import other_walls, room_of, surface_rows
 
 TRIES = 2000  # of all that have no place yet
 

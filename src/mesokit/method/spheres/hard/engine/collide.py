@@ -5,22 +5,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.spheres.common.wall.rows import MOVES, vibration
+from mesokit.method.spheres.common.walls import MOVES, vibration
 from mesokit.method.spheres.hard.collision.protocol import restitution, step_of_energy
 from mesokit.method.spheres.hard.engine.groups import (
-    ELASTIC,
-    IN_A_ROW,
     INERTIA,
     LAST,
     MASS,
-    PAIRS,
     RADIUS,
     SPIN,
-    SQUARES,
-    TIMES,
     VELOCITY,
-    VIRIAL,
-    WALLS,
 )
 from mesokit.method.spheres.hard.engine.motion import bring_to, entries, nearest_image, put_entries
 from mesokit.method.spheres.hard.engine.walls import outward
@@ -29,6 +22,34 @@ from mesokit.scalar.random import METHOD, Counter, normals, unit, words
 from mesokit.scalar.vector import added_scaled, dot, outer, scaled
 
 THERMAL = METHOD + np.uint64(70)  # purpose of the random numbers of thermal walls
+
+
+# places in `Tally.counts`, in `Tally.sums`, and in `Flights.sums`
+PAIRS, WALLS, ELASTIC, IN_A_ROW, COUNTS = 0, 1, 2, 3, 4
+VIRIAL, SUMS = 0, 1
+TIMES, SQUARES = 0, 1
+
+
+class Flights(NamedTuple):
+    """Free flights between collisions. per_time: bins in a unit of time; counts (bins + 1,), the
+    last of all longer flights; sums (2,) of their times and of the squares."""
+
+    per_time: float
+    counts: Any
+    sums: Any
+
+
+class Tally(NamedTuple):
+    """Counts and sums over events.
+
+    counts (4,), sums (1,); impulse (walls, d): momentum that each wall has taken; flights: Flights,
+    or () where no observable reads them, and nothing is compiled for it.
+    """
+
+    counts: Any
+    sums: Any
+    impulse: Any
+    flights: Any
 
 
 class Rules(NamedTuple):

@@ -12,10 +12,9 @@ from mesokit.errors import RunError
 from mesokit.method.spheres.common.engine import SphereEngine
 from mesokit.method.spheres.common.near import near_pairs
 from mesokit.method.spheres.common.start.first_state import Started
-from mesokit.method.spheres.common.wall.surfaces import room_of, surface_rows
+from mesokit.method.spheres.common.walls import room_of, surface_rows
 from mesokit.method.spheres.hard.checks import wall_contacts
-from mesokit.method.spheres.hard.engine import groups
-from mesokit.method.spheres.hard.engine.collide import Rules
+from mesokit.method.spheres.hard.engine import collide, groups
 from mesokit.method.spheres.hard.engine.system import HardSetup, HardSystem
 from mesokit.method.spheres.hard.heating.protocol import Heated
 from mesokit.method.spheres.hard.window import flight_bins, instant, window
@@ -44,7 +43,7 @@ class EventDriven(SphereEngine):
     def _system(self) -> HardSystem:
         section, made = self.case.spheres, self.made
         pair = section.collision
-        rules = Rules(
+        rules = collide.Rules(
             pair.kernel(),
             pair.tangential,
             math.inf if pair.friction is None else pair.friction,
@@ -113,7 +112,7 @@ class EventDriven(SphereEngine):
     def end_warmup(self) -> None:
         """Set counts of events and the momentum taken by walls to zero."""
         tally = self.system.tally
-        tally.counts[: groups.IN_A_ROW] = 0
+        tally.counts[: collide.IN_A_ROW] = 0
         for sums in (tally.sums, tally.impulse, *tally.flights[1:]):
             sums[:] = 0
 
@@ -165,7 +164,7 @@ class EventDriven(SphereEngine):
         """Collisions of pairs and with walls since the warm-up, and the number of both that the
         contact time has made elastic."""
         counts = self.system.tally.counts
-        return int(counts[groups.PAIRS]), int(counts[groups.WALLS]), int(counts[groups.ELASTIC])
+        return int(counts[collide.PAIRS]), int(counts[collide.WALLS]), int(counts[collide.ELASTIC])
 
     def logged(self) -> dict[str, float]:
         pairs, walls, _ = self.collisions
@@ -181,7 +180,7 @@ class EventDriven(SphereEngine):
     @property
     def virial(self) -> float:
         """Sum of r.dp over collisions of pairs since the warm-up."""
-        return float(self.system.tally.sums[groups.VIRIAL])
+        return float(self.system.tally.sums[collide.VIRIAL])
 
     @property
     def free_times(self) -> tuple[Array, NDArray[np.int64], Array]:

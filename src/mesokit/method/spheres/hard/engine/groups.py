@@ -17,8 +17,6 @@ PARTNER, PARTNER_HITS, AFTER, PREVIOUS, BIN, PLACE, EVENT_WIDTH = 0, 1, 2, 3, 4,
 LEAVES, NOTHING = -1, -2  # it leaves the shell of its list; no event
 LOST = -3  # a wall, but the search for the time of contact failed
 FIRST_WALL = -4  # and below: walls, -4 - number
-# results of `run_events`
-DONE, FULL, COLLAPSED, PAUSED, FAILED = 0, 1, 2, 3, 4
 
 
 class HardWorld(NamedTuple):
@@ -84,31 +82,3 @@ class Queue(NamedTuple):
     first: Any
     heap: Any
     now: Any
-
-
-class Flights(NamedTuple):
-    """Free flights between collisions. per_time: bins in a unit of time; counts (bins + 1,), the
-    last of all longer flights; sums (2,) of their times and of the squares."""
-
-    per_time: float
-    counts: Any
-    sums: Any
-
-
-class Tally(NamedTuple):
-    """Counts and sums over events.
-
-    counts (4,), sums (1,); impulse (walls, d): momentum that each wall has taken; flights: Flights,
-    or () where no observable reads them, and nothing is compiled for it.
-    """
-
-    counts: Any
-    sums: Any
-    impulse: Any
-    flights: Any
-
-
-# places in `Tally.counts`, in `Tally.sums`, and in `Flights.sums`
-PAIRS, WALLS, ELASTIC, IN_A_ROW, COUNTS = 0, 1, 2, 3, 4
-VIRIAL, SUMS = 0, 1
-TIMES, SQUARES = 0, 1

@@ -1,8 +1,8 @@
-"""Lists of neighbours: two spheres are on one another's list if their centres allow them to meet.
+"""Neighbour lists: two spheres are on each other's list if they can meet within their shells.
 
-A centre is where a sphere was when its list was made. When the sphere is a shell away from
-it, this sphere alone gets a new centre and list, and enters the lists of others. Spheres cross no
-cells, as only centres lie in the grid.
+The centre of a shell is the place of a sphere when its list was made. When the sphere leaves the
+shell, it alone gets a new centre and list, and enters the lists of others. The grid of cells holds
+centres, so that spheres cross no cells.
 """
 
 import math
@@ -21,7 +21,7 @@ def cell_along(lists, k, x):
 
 @scalar
 def link(lists, i, r):
-    """Put a centre into its cell; r lies in the box."""
+    """Put the centre r of sphere i, in the box, into its cell."""
     cell = 0
     for k in range(len(r)):
         cell = cell * lists.cells[k] + cell_along(lists, k, r[k])
@@ -46,7 +46,7 @@ def unlink(lists, i):
 
 @scalar
 def forget(lists, i):
-    """Take i off the lists of all others, and empty its own."""
+    """Remove i from the lists of all others, and empty its own."""
     # Lists are mutual: i is on the list of each of its neighbours. The last entry there takes its
     # place; the order of lists does not matter, since equal times are decided by particle numbers.
     for a in range(lists.count[i]):
@@ -62,7 +62,7 @@ def forget(lists, i):
 
 @scalar
 def renew(world, lists, state, i, r):
-    """Make the list of i anew about r, in the box; whether all lists had room."""
+    """Make the list of i anew about r, in the box; true if there was room."""
     unlink(lists, i)
     forget(lists, i)
     put_entries(lists.centre, i, 0, r)
@@ -92,16 +92,12 @@ def find(world, lists, state, i, r):
 
 @scalar
 def wrapped(world, lists, k, cell):
-    """The number of a cell along an axis beyond the ends of the box; -1 where there is none.
-
-    Of fewer than three cells each is looked at once.
-    """
+    """The number of a cell along an axis, also beyond the ends of the box; -1 where there is none,
+    or where it is found already, with fewer than three cells."""
     cells = lists.cells[k]
-    if cell < 0:
-        return cells - 1 if world.inverse[k] > 0.0 and cells > 2 else -1
-    if cell >= cells:
-        return 0 if world.inverse[k] > 0.0 and cells > 2 else -1
-    return cell
+    if 0 <= cell < cells:
+        return cell
+    return (cell + cells) % cells if world.inverse[k] > 0.0 and cells > 2 else -1
 
 
 @scalar
@@ -128,10 +124,8 @@ def list_cell(world, lists, state, i, r, cell):
 
 @scalar
 def time_to_leave(world, lists, r, v, centre):
-    """A time after which a sphere may be a shell away from its centre, not later than it is.
-
-    With gravity it is a lower bound, from the speed that it could have.
-    """
+    """The time after which a sphere leaves its shell; with gravity a lower bound, from its largest
+    speed."""
     gone = nearest_image(world, added_scaled(r, -1.0, centre))
     square, shell = dot(gone, gone), lists.shell
     pull = math.sqrt(dot(world.gravity, world.gravity))
@@ -140,7 +134,7 @@ def time_to_leave(world, lists, r, v, centre):
         left = max(shell - math.sqrt(square), 0.0)
         u = math.sqrt(speed)
         return 2.0 * left / (u + math.sqrt(u * u + 2.0 * pull * left))
-    if speed < 1e-200:  # whose square is nothing
+    if speed < 1e-200:  # the square underflows
         return math.inf
     b = dot(gone, v)
     return (math.sqrt(max(b * b + speed * (shell * shell - square), 0.0)) - b) / speed

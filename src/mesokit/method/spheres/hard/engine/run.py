@@ -7,20 +7,14 @@ events of the heap are therefore prefetched. Only the speed depends on this.
 import numpy as np
 
 from mesokit.kernels.kernel import kernel
-from mesokit.method.spheres.hard.engine.collide import collide_pair, collide_wall
+from mesokit.method.spheres.hard.engine.collide import IN_A_ROW, collide_pair, collide_wall
 from mesokit.method.spheres.hard.engine.groups import (
-    COLLAPSED,
-    DONE,
-    FAILED,
     FIRST_WALL,
-    FULL,
-    IN_A_ROW,
     LAST,
     LEAVES,
     LOST,
     PARTNER,
     PARTNER_HITS,
-    PAUSED,
     RADIUS,
     TIME,
 )
@@ -63,6 +57,7 @@ def prefetch_lists(spheres, lists, queue, i):
             prefetch(lists.near, k, byte)
 
 
+DONE, FULL, COLLAPSED, PAUSED, FAILED = range(5)  # results of `run_events`
 MANY = 100  # collisions in a row that take no time
 AT_ONCE = 1_000_000  # events, after which Python can treat signals
 

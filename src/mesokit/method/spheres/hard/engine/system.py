@@ -9,18 +9,10 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.kernels.group import Packing
-from mesokit.method.spheres.common.wall.rows import FREQUENCY, PHASE
-from mesokit.method.spheres.hard.engine import groups
-from mesokit.method.spheres.hard.engine.collide import Rules
-from mesokit.method.spheres.hard.engine.groups import (
-    Flights,
-    HardLists,
-    HardWorld,
-    Queue,
-    SphereMemory,
-    Tally,
-)
-from mesokit.method.spheres.hard.engine.run import AT_ONCE, read, rebuild, run_events, synchronise
+from mesokit.method.spheres.common.walls import FREQUENCY, PHASE
+from mesokit.method.spheres.hard.engine import groups, run
+from mesokit.method.spheres.hard.engine.collide import COUNTS, SUMS, Flights, Rules, Tally
+from mesokit.method.spheres.hard.engine.groups import HardLists, HardWorld, Queue, SphereMemory
 from mesokit.processes.signals import heard
 from mesokit.seam.engine import Interrupted, State
 
@@ -81,7 +73,7 @@ class HardSystem:
         if given.flights is not None:
             width, bins = given.flights
             flights = Flights(1 / width, np.zeros(bins + 1, np.int64), np.zeros(2))
-        counts, sums = np.zeros(groups.COUNTS, np.int64), np.zeros(groups.SUMS)
+        counts, sums = np.zeros(COUNTS, np.int64), np.zeros(SUMS)
         self.tally = Tally(counts, sums, np.zeros((len(given.walls), d)), flights)
         self.room, self.per_time = ROOM, 1.0
         self.walls = given.walls.copy()
@@ -100,8 +92,8 @@ class HardSystem:
         spins = np.asarray(spins).reshape(self.n, -1)
         body[:, groups.SPIN : groups.SPIN + spins.shape[1]] = spins
         self.lists, self.queue = self._lists(), self._queue()
-        run_events.compile_ahead(*self._arguments(0.0))
-        synchronise(self.world, self.spheres, 0.0)
+        run.run_events.compile_ahead(*self._arguments(0.0))
+        run.synchronise(self.world, self.spheres, 0.0)
         self.begin_window(0)
 
     def begin_window(self, windows: int) -> None:
@@ -157,7 +149,7 @@ class HardSystem:
         while True:
             self.lists, self.queue = self._lists(), self._queue()
             rules, spheres = self.given.rules, self.spheres
-            if rebuild(self.world, rules, spheres, self.lists, self.queue, self.now):
+            if run.rebuild(self.world, rules, spheres, self.lists, self.queue, self.now):
                 break
             self.room *= 2
 
@@ -214,7 +206,7 @@ class HardSystem:
             if heard():
                 raise Interrupted
             self._run(self.window)
-            synchronise(self.world, self.spheres, self.window)
+            run.synchronise(self.world, self.spheres, self.window)
             self.now = 0.0
             if self.given.turn is not None:
                 columns = slice(groups.VELOCITY, groups.VELOCITY + self.d)
@@ -227,13 +219,13 @@ class HardSystem:
 
     def _run(self, end: float) -> None:
         began = self.now
-        while (ended := run_events(*self._arguments(end))) != groups.DONE:
+        while (ended := run.run_events(*self._arguments(end))) != run.DONE:
             first = int(self.queue.heap[0])
-            if ended in (groups.COLLAPSED, groups.FAILED):
+            if ended in (run.COLLAPSED, run.FAILED):
                 raise RunError(self._failure(ended, first))
-            if ended == groups.PAUSED:
+            if ended == run.PAUSED:
                 now = float(self.spheres.state[:, groups.TIME].max())
-                if self.given.most * self.n * (now - began) < AT_ONCE:
+                if self.given.most * self.n * (now - began) < run.AT_ONCE:
                     most = self.given.most
                     raise RunError(f"more than {most:.3g} events of a sphere in a unit of time")
                 began = now
@@ -252,7 +244,7 @@ class HardSystem:
     def _failure(self, ended: int, i: int) -> str:
         """The message for an event of sphere i (its place in memory) that ends the run."""
         now, number = self.windows * self.window + float(self.queue.time[i]), self.spheres.number
-        if ended == groups.FAILED:
+        if ended == run.FAILED:
             return (
                 f"sphere {number[i]} at time {now:.6g}: no time found at which it meets a wall; "
                 "expected walls that vibrate more slowly, or fewer turns of them in a flight"
@@ -267,7 +259,7 @@ class HardSystem:
     def read(self) -> tuple[Array, Array]:
         """Places, not brought into the box, and velocities (n, d) now, by particle number."""
         places, velocities = np.empty((self.n, self.d)), np.empty((self.n, self.d))
-        read(self.world, self.spheres, self.now, places, velocities)
+        run.read(self.world, self.spheres, self.now, places, velocities)
         boxes = np.empty_like(self.spheres.boxes)
         boxes[self.spheres.number] = self.spheres.boxes
         return places + boxes * np.array(self.given.size, float), velocities

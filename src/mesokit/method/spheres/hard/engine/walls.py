@@ -6,7 +6,7 @@ are too short to come through: from a lower bound of the distance, a parabola.
 
 import math
 
-from mesokit.method.spheres.common.wall.rows import (
+from mesokit.method.spheres.common.walls import (
     AMPLITUDE,
     AXIS,
     FREQUENCY,

@@ -2,7 +2,7 @@
 
 import math
 
-from mesokit.method.spheres.common.wall.rows import (
+from mesokit.method.spheres.common.walls import (
     AXIS,
     KIND,
     MOVES,

@@ -11,7 +11,7 @@ from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.group import Packing
 from mesokit.loops.threads import Threads
-from mesokit.method.spheres.common.wall.rows import AMPLITUDE, AXIS, KIND, PLACE, PLANE
+from mesokit.method.spheres.common.walls import AMPLITUDE, AXIS, KIND, PLACE, PLANE
 from mesokit.method.spheres.soft.engine import groups
 from mesokit.method.spheres.soft.engine.acting import measure_all
 from mesokit.method.spheres.soft.engine.contact.remembered import carry_springs, pairs_of, remember

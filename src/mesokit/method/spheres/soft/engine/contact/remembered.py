@@ -56,8 +56,8 @@ NO_SPRINGS = Springs((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 @scalar
 def kept(springs, c):
-    """The springs of contact c; not stretched where contacts remember nothing."""
-    sliding, rolling = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    """The springs of contact c; of zero length where contacts have no memory."""
+    sliding, rolling = NO_SPRINGS.sliding, NO_SPRINGS.rolling
     if springs.shape[1] > SLIDING:
         sliding = springs[c, 0], springs[c, 1], springs[c, 2]
     if springs.shape[1] > ROLLING:
@@ -67,7 +67,7 @@ def kept(springs, c):
 
 @scalar
 def keep(springs, c, now):
-    """Remember the springs of a contact."""
+    """Store the springs of contact c."""
     if springs.shape[1] > SLIDING:
         springs[c, 0], springs[c, 1], springs[c, 2] = now.sliding
     if springs.shape[1] > ROLLING:
@@ -76,8 +76,7 @@ def keep(springs, c, now):
 
 @scalar
 def kept_between(lists, i, j):
-    """The springs of spheres i and j as i sees them: along the surface with the other sign if j
-    keeps them, those of rolling as they are."""
+    """The springs of spheres i and j for i; sliding has the other sign in the memory of j."""
     for s in range(lists.own[i]):
         if lists.near[i, s] == j:
             return kept(lists.springs, lists.begin[i] + s)
@@ -90,7 +89,7 @@ def kept_between(lists, i, j):
 
 @kernel
 def carry_springs(worker, order, old, new):
-    """Bring what contacts remember from old lists to new ones; `order`: where a sphere was."""
+    """Copy springs from old lists to new ones; `order` (n,): old places in memory."""
     first, last = share(len(order), worker.thread, worker.threads)
     for i in range(first, last):
         for s in range(new.own[i]):
