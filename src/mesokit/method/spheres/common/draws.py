@@ -1,12 +1,10 @@
 """Random numbers of spheres: by seed, turn, purpose and particle number."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.kernels.kernel import kernel
 from mesokit.scalar.random import METHOD, Counter, normals, unit, words
-
-Array = NDArray[np.float64]
+from mesokit.seam.engine import Array
 
 
 def normal_rows(seed: int, turn: int, purpose: int, n: int, width: int) -> Array:

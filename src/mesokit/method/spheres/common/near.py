@@ -5,7 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.scalar.elementary import rint  # noqa: F401  of `nearest_image`
+from mesokit.scalar.jit import elementwise
 from mesokit.seam.engine import Array, Integers
+
+
+@elementwise
+def nearest_image(box, r):
+    """The shortest of the vectors that differ from r by whole boxes along axes that repeat."""
+    return "r[{k}] - rint(r[{k}] * box.inverse[{k}]) * box.size[{k}]"
 
 
 def near_pairs(

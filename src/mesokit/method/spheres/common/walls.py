@@ -13,9 +13,11 @@ from mesokit.errors import CaseError
 from mesokit.geometry.region import Part, Room, Term
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.surface import Surface
-from mesokit.scalar.jit import scalar
+from mesokit.method.spheres.common.near import nearest_image
+from mesokit.scalar.jit import elementwise, scalar
+from mesokit.scalar.vector import added_scaled, dot, scaled
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
 # columns: kind, place of three, unit vector of three (normal of a plane, axis of a cylinder),
 # radius, velocity of three, amplitude, frequency, phase at the start of the window
 KIND, PLACE, AXIS, ROUND, MOVES = 0, 1, 4, 7, 8
@@ -37,6 +39,26 @@ def vibration(walls, w, time):
         amplitude * frequency * math.cos(phase),
         amplitude * frequency * frequency,
     )
+
+
+@elementwise
+def entries(rows, i, start, pattern):
+    """Consecutive entries of row i, as a tuple as long as `pattern`."""
+    return "rows[i, start + {k}]"
+
+
+@scalar
+def outward(walls, w, box, r):
+    """Distance of a place from a wall that does not vibrate, and the normal into the box."""
+    from_place = added_scaled(r, -1.0, entries(walls, w, PLACE, r))
+    axis = entries(walls, w, AXIS, r)
+    if walls[w, KIND] == PLANE:
+        return dot(from_place, axis), axis
+    from_place = nearest_image(box, from_place)
+    across = added_scaled(from_place, -dot(from_place, axis), axis)
+    length = math.sqrt(dot(across, across))
+    normal = scaled(walls[w, KIND] / length, across) if length > 0.0 else axis
+    return walls[w, KIND] * (length - walls[w, ROUND]), normal
 
 
 class SurfaceRows(NamedTuple):

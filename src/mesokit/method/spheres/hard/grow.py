@@ -7,22 +7,22 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.errors import CaseError, RunError
 from mesokit.kernels.kernel import kernel
+from mesokit.method.spheres.common.near import nearest_image
+from mesokit.method.spheres.common.walls import entries, outward
 from mesokit.method.spheres.hard.collision.hard import Constant
 from mesokit.method.spheres.hard.engine.collide import Rules
 from mesokit.method.spheres.hard.engine.groups import VELOCITY, HardWorld
-from mesokit.method.spheres.hard.engine.motion import entries, nearest_image, put_entries
+from mesokit.method.spheres.hard.engine.motion import put_entries
 from mesokit.method.spheres.hard.engine.system import HardSetup, HardSystem
-from mesokit.method.spheres.hard.engine.walls import outward
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import METHOD, Counter, unit, words
 from mesokit.scalar.vector import added_scaled, dot
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
 PLACES = METHOD + np.uint64(71)  # purpose of the random numbers
 TRIES = 100_000  # places that are drawn for one sphere
 DILUTE = {2: 0.20, 3: 0.10}  # packing fraction of the spheres that begin to grow
@@ -143,7 +143,7 @@ def cell_along_axis(world, cells, k, r):
 def fits(world, cells, head, following, radii, places, r, radius):
     """Whether a sphere at r touches neither a wall nor another."""
     for w in range(len(world.walls)):
-        distance, _ = outward(world, w, r)
+        distance, _ = outward(world.walls, w, world, r)
         if distance < radius:
             return False
     for step in range(9 if len(r) == 2 else 27):

@@ -39,12 +39,10 @@ class HardSpheres(Spheres):
 
     @property
     def instant_collision(self) -> SphereCollision:
-        """The collision rule."""
         return self.collision
 
     @property
     def energy_source(self) -> Heating | None:
-        """What puts energy in."""
         return self.heating
 
     @property

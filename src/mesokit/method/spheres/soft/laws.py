@@ -21,7 +21,6 @@ from mesokit.method.spheres.soft.pair.protocol import ContactLaw, damping_ratio
 from mesokit.method.spheres.soft.scales import fastest_followed, speed_of_collision, timestep_of
 from mesokit.potential.protocol import central
 
-Array = NDArray[np.float64]
 PARTS = 2.0**50  # quanta in the force at an overlap of a diameter; sums may be 2^11 times larger
 FINEST = 2.0**34  # quanta in the usual force of a potential
 ROOM = 2.0**50  # largest number of quanta in one term of a vector loop

@@ -74,12 +74,10 @@ class SoftSpheres(Spheres):
 
     @property
     def thermostatted(self) -> bool:
-        """Whether there is a thermostat."""
         return self.thermostat is not None
 
     @property
     def usual_diameter(self) -> float:
-        """That of the potential, of contacts 1."""
         touching = isinstance(self.pair, ContactLaw)
         return 1.0 if touching else float(self.pair.diameter)  # type: ignore[attr-defined]
 
@@ -104,23 +102,20 @@ class SoftSpheres(Spheres):
         return float(self.pair.reach)  # type: ignore[attr-defined]
 
     def skin_of(self, box: Box, shut: Collection[str]) -> float:
-        """How far lists go beyond that, in a box of which walls shut some axes."""
+        """Length of lists beyond the reach, in a box whose axes `shut` are closed."""
         if self.skin is not None:
             return self.skin
         reach = self.reach(box)
         pairs = zip(box.axes, box.size, strict=True)
         free = min((length for axis, length in pairs if axis not in shut), default=math.inf)
-        return min(self._usual_skin(box, reach), FITS * (0.5 * free - reach))
-
-    def _usual_skin(self, box: Box, reach: float) -> float:
-        """The same where the box has room for it."""
-        if not isinstance(self.pair, ContactLaw):
-            return POTENTIAL_SKIN * reach
-        d = box.dimension
-        within = self.count(box) / box.volume * ball_volume(d, 2 * reach)
-        wanted = ((ALONE / within) ** (1 / d) - 1) * reach
-        widest = min(WIDEST_SKIN * reach, 0.49 * min(box.size) - reach)  # none twice on a list
-        return float(max(min(wanted, widest), CONTACT_SKIN * reach))
+        usual = POTENTIAL_SKIN * reach
+        if isinstance(self.pair, ContactLaw):
+            d = box.dimension
+            within = self.count(box) / box.volume * ball_volume(d, 2 * reach)
+            wanted = ((ALONE / within) ** (1 / d) - 1) * reach
+            widest = min(WIDEST_SKIN * reach, 0.49 * min(box.size) - reach)  # none twice on a list
+            usual = float(max(min(wanted, widest), CONTACT_SKIN * reach))
+        return min(usual, FITS * (0.5 * free - reach))
 
 
 class SoftSections:

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
@@ -13,8 +12,8 @@ from mesokit.method.spheres.soft.engine.groups import INVERSE, Motion
 from mesokit.method.spheres.soft.engine.system import SoftSetup, SoftSystem
 from mesokit.method.spheres.soft.laws import contact_of, others_of, three_axes
 from mesokit.method.spheres.soft.pair.spring_dashpot import SpringDashpot
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
 RESTITUTION = 0.3  # low, so that they soon lie
 SOFT = 1e-3  # overlap of the lowest, in diameters, under a column as high as the box
 IN_CONTACT = 20  # steps: single collisions do not matter

@@ -111,8 +111,8 @@ def thermal_velocities(
 def thermal_spins(seed: int, made: Made, kT: float, dimension: int) -> Array:
     """Maxwellian angular velocities, (n,) in 2D and (n, 3) in 3D."""
     n, axes = len(made.masses), 1 if dimension == 2 else 3
-    w = normal_rows(seed, 0, SPINS, n, 3)[:, :axes] / np.sqrt(made.inertia)[:, None]
-    w = _scaled(w, made.inertia, n * axes, kT)
+    drawn = normal_rows(seed, 0, SPINS, n, 3)[:, :axes] / np.sqrt(made.inertia)[:, None]
+    w = _scaled(drawn, made.inertia, n * axes, kT)
     return w[:, 0] if dimension == 2 else w
 
 

@@ -79,7 +79,15 @@ def fitted(case: Case, made: Made, there: Snapshot, moving: bool) -> Placed:
     if len(there.bonds):
         raise CaseError(f"it has {len(there.bonds)} bonds; spheres have none")
     order, diameters = _by_diameter(case, made, there)
-    _require_masses(made, there, order, diameters, d)
+    if there.masses is not None:
+        wanted = made.masses * (diameters / made.diameters) ** d
+        off = ~np.isclose(there.masses[order], wanted, rtol=10 * ROUNDING, atol=0)
+        if off.any():
+            one = int(np.argmax(off))
+            raise CaseError(
+                f"particle {there.numbers[order[one]]} has mass {there.masses[order[one]]:.6g}; "
+                f"expected {wanted[one]:.6g} (spheres.kinds[#{made.kinds[one] + 1}])"
+            )
     velocities = spins = None
     if moving and there.velocities is not None:
         velocities = there.velocities[order, :d]
@@ -128,26 +136,10 @@ def _by_diameter(case: Case, made: Made, there: Snapshot) -> tuple[NDArray[np.in
     found = there.diameters[order]
     if off(found).any():
         one = int(np.argmax(off(found)))
-        kind = made.kinds[one] + 1
         ends = sorted({float(f"{middle[one] * (1 + s * spread[one]):.6g}") for s in (-1, 1)})
         wanted = " to ".join(f"{end:g}" for end in ends)
         raise CaseError(
             f"particle {there.numbers[order[one]]} has diameter {found[one]:.6g}; expected "
-            f"{wanted} (spheres.kinds[#{kind}])"
+            f"{wanted} (spheres.kinds[#{made.kinds[one] + 1}])"
         )
     return order, found
-
-
-def _require_masses(
-    made: Made, there: Snapshot, order: NDArray[np.int64], diameters: Array, dimension: int
-) -> None:
-    if there.masses is None:
-        return
-    wanted = made.masses * (diameters / made.diameters) ** dimension
-    off = ~np.isclose(there.masses[order], wanted, rtol=10 * ROUNDING, atol=0)
-    if off.any():
-        one = int(np.argmax(off))
-        raise CaseError(
-            f"particle {there.numbers[order[one]]} has mass {there.masses[order[one]]:.6g}; "
-            f"expected {wanted[one]:.6g} (spheres.kinds[#{made.kinds[one] + 1}])"
-        )

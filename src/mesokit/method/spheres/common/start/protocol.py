@@ -5,15 +5,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from mesokit.case.case import Case
 from mesokit.case.component import component
 from mesokit.case.registry import family
 from mesokit.method.spheres.common.made import Made
-
-Array = NDArray[np.float64]
+from mesokit.seam.engine import Array
 
 
 class Placed(NamedTuple):

@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.spheres.common.walls import MOVES, vibration
+from mesokit.method.spheres.common.near import nearest_image
+from mesokit.method.spheres.common.walls import MOVES, entries, outward, vibration
 from mesokit.method.spheres.hard.collision.protocol import restitution, step_of_energy
 from mesokit.method.spheres.hard.engine.groups import (
     INERTIA,
@@ -15,8 +16,7 @@ from mesokit.method.spheres.hard.engine.groups import (
     SPIN,
     VELOCITY,
 )
-from mesokit.method.spheres.hard.engine.motion import bring_to, entries, nearest_image, put_entries
-from mesokit.method.spheres.hard.engine.walls import outward
+from mesokit.method.spheres.hard.engine.motion import bring_to, put_entries
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import METHOD, Counter, normals, unit, words
 from mesokit.scalar.vector import added_scaled, dot, outer, scaled
@@ -208,7 +208,7 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
     """A sphere touches a wall at `time`, to which it is brought: it is reflected, or sent out."""
     state, body, walls = spheres.state, spheres.body, world.walls
     r, v = bring_to(world, spheres, i, time)
-    _, n = outward(world, w, r)
+    _, n = outward(world.walls, w, world, r)
     _, speed, _ = vibration(walls, w, time)
     wall_velocity = added_scaled(entries(walls, w, MOVES, r), speed, n)
     tally.counts[WALLS] += 1

@@ -7,8 +7,10 @@ centres, so that spheres cross no cells.
 
 import math
 
+from mesokit.method.spheres.common.near import nearest_image
+from mesokit.method.spheres.common.walls import entries
 from mesokit.method.spheres.hard.engine.groups import RADIUS
-from mesokit.method.spheres.hard.engine.motion import entries, nearest_image, put_entries
+from mesokit.method.spheres.hard.engine.motion import put_entries
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added_scaled, dot
 

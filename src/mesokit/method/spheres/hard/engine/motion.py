@@ -4,18 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mesokit.method.spheres.common.walls import entries
 from mesokit.method.spheres.hard.collision.protocol import next_contact
 from mesokit.method.spheres.hard.engine.groups import RADIUS, TIME, VELOCITY
 from mesokit.scalar.elementary import rint
 from mesokit.scalar.intrinsics import floor, mul_add, with_item
 from mesokit.scalar.jit import elementwise, for_each, scalar
 from mesokit.scalar.vector import added_scaled
-
-
-@elementwise
-def entries(rows, i, start, pattern):
-    """Consecutive entries of row i, as a tuple as long as `pattern`."""
-    return "rows[i, start + {k}]"
 
 
 @for_each
@@ -42,14 +37,6 @@ def velocity_at(world, state, i, time):
     """The velocity of sphere i at a time."""
     v = entries(state, i, VELOCITY, world.size)
     return added_scaled(v, time - state[i, TIME], world.gravity)
-
-
-@scalar
-def nearest_image(world, r):
-    """The shortest of the vectors that differ from r by whole boxes."""
-    for k in range(len(r)):
-        r = with_item(r, k, r[k] - rint(r[k] * world.inverse[k]) * world.size[k])
-    return r
 
 
 @scalar

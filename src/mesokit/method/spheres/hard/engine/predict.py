@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from mesokit.method.spheres.common.walls import entries
 from mesokit.method.spheres.hard.engine.groups import (
     FIRST_WALL,
     LEAVES,
@@ -15,7 +16,6 @@ from mesokit.method.spheres.hard.engine.groups import (
 )
 from mesokit.method.spheres.hard.engine.lists import time_to_leave
 from mesokit.method.spheres.hard.engine.motion import (
-    entries,
     of_column,
     of_row,
     pair_event_time,

@@ -14,9 +14,8 @@ from mesokit.method.spheres.hard.engine import groups, run
 from mesokit.method.spheres.hard.engine.collide import COUNTS, SUMS, Flights, Rules, Tally
 from mesokit.method.spheres.hard.engine.groups import HardLists, HardWorld, Queue, SphereMemory
 from mesokit.processes.signals import heard
-from mesokit.seam.engine import Interrupted, State
+from mesokit.seam.engine import Array, Interrupted, State
 
-Array = NDArray[np.float64]
 WANTED = {2: 10.0, 3: 14.0}  # spheres on a list: longer ones cost more, shorter ones last less
 CLOSEST = 0.1  # of the largest diameter: the smallest shell
 ROOM = 24  # entries of a list, at first; a multiple of eight

@@ -16,37 +16,18 @@ from mesokit.method.spheres.common.walls import (
     PLACE,
     PLANE,
     ROUND,
+    entries,
+    outward,
     vibration,
 )
 from mesokit.method.spheres.hard.engine.groups import RADIUS, TIME, VELOCITY
-from mesokit.method.spheres.hard.engine.motion import entries, fallen
-from mesokit.scalar.elementary import rint
-from mesokit.scalar.intrinsics import with_item
+from mesokit.method.spheres.hard.engine.motion import fallen
 from mesokit.scalar.jit import scalar, seldom
-from mesokit.scalar.vector import added_scaled, dot, scaled
+from mesokit.scalar.vector import added_scaled, dot
 
 CLOSE = 1e-13  # of the radius of a sphere: it touches
 ROUNDING = 2e-15  # of the lengths that a gap is made of: no gap is known better
 STEPS = 100_000  # of one search; those of a thousand turns of a plate are fewer
-
-
-@scalar
-def outward(world, w, r):
-    """Distance of a place from a wall that does not vibrate, and the normal into the box."""
-    walls = world.walls
-    from_place = added_scaled(r, -1.0, entries(walls, w, PLACE, r))
-    axis = entries(walls, w, AXIS, r)
-    if walls[w, KIND] == PLANE:
-        return dot(from_place, axis), axis
-    for k in range(len(r)):
-        boxes = rint(from_place[k] * world.inverse[k])
-        from_place = with_item(from_place, k, from_place[k] - boxes * world.size[k])
-    across = added_scaled(from_place, -dot(from_place, axis), axis)
-    length = math.sqrt(dot(across, across))
-    normal = axis
-    if length > 0.0:
-        normal = scaled(walls[w, KIND] / length, across)
-    return walls[w, KIND] * (length - walls[w, ROUND]), normal
 
 
 @seldom
@@ -60,7 +41,7 @@ def time_to_wall(world, state, i, w, until):
     r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
     radius = state[i, RADIUS]
     if walls[w, KIND] == PLANE and walls[w, AMPLITUDE] == 0.0 and world.growth == 0.0:
-        distance, normal = outward(world, w, r)
+        distance, normal = outward(world.walls, w, world, r)
         return since + fall(distance - radius, dot(v, normal), dot(g, normal))
     tau = 0.0
     # March in steps that end before the contact. For the time `longest` the gap shrinks no faster
@@ -97,7 +78,7 @@ def until_near(world, state, i, w, tau):
     if walls[w, KIND] != PLANE or world.growth != 0.0:
         return 0.0
     r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
-    distance, normal = outward(world, w, fallen(r, tau, v, g))
+    distance, normal = outward(world.walls, w, world, fallen(r, tau, v, g))
     above = distance - walls[w, AMPLITUDE] - state[i, RADIUS]
     if above <= 0.0:
         return 0.0
@@ -129,7 +110,7 @@ def approach(world, state, i, w, tau):
     r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
     then, radius = state[i, TIME] + tau, state[i, RADIUS]
     moving = added_scaled(v, tau, g)
-    distance, normal = outward(world, w, fallen(r, tau, v, g))
+    distance, normal = outward(world.walls, w, world, fallen(r, tau, v, g))
     shift, speed, bend = vibration(walls, w, then)
     gap = distance - shift - radius * (1.0 + world.growth * then)
     closing = speed + radius * world.growth - dot(moving, normal)

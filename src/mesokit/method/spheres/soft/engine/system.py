@@ -30,8 +30,8 @@ from mesokit.method.spheres.soft.engine.solid import MOST
 from mesokit.method.spheres.soft.engine.step import advance, find_forces
 from mesokit.method.spheres.soft.engine.taken import all_taken, in_numbers
 from mesokit.scalar.random import Counter
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
 CELLS = 4_000_000  # at most
 ROUNDING = 1 + 1e-9  # cells are larger by this than they need to be
 KEPT = ("place", "velocity", "spin", "force", "torque", "images")  # arrays in checkpoints

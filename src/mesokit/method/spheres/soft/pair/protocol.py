@@ -1,7 +1,7 @@
-"""What a pair law answers: a potential of mesokit, or a law of contact, which loses energy.
+"""Base of the pair laws of soft spheres: potentials of mesokit, and laws of contact.
 
-The first argument of the scalar functions is the NamedTuple of parameters that `normal` gives; its
-class picks the implementation.
+The first argument of the scalar functions is the NamedTuple of parameters that `normal` returns;
+its class selects the implementation.
 """
 
 import math
@@ -72,11 +72,11 @@ class ContactLaw(PairLaw):
 
     @abstractmethod
     def largest_force(self, case: Case) -> float:
-        """Force of an overlap of a whole diameter, about: what quanta of force are a part of."""
+        """Force at an overlap of a whole diameter, about; quanta of force are a part of it."""
 
     @abstractmethod
     def contact_time_of(self, mass: float, speed: float) -> float:
-        """How long a collision takes that closes at this speed, of this reduced mass."""
+        """Duration of a collision at this relative speed, of this reduced mass."""
 
     @abstractmethod
     def overlap_of(self, mass: float, speed: float) -> float:
@@ -92,7 +92,7 @@ class ContactLaw(PairLaw):
         return self.restitution_of(1.0, 1.0) == 1.0 and self.friction == 0.0 and self.rolling == 0.0
 
     def width(self, rubs: bool) -> int:
-        """How many numbers a contact remembers; `rubs`: whether walls have their own friction."""
+        """Number of components of springs of a contact; `rubs`: walls have their own friction."""
         if self.rolling > 0:
             return 6
         return 3 if (self.friction > 0 or rubs) and self.tangential == "history" else 0
@@ -111,8 +111,8 @@ def damping_ratio(restitution: float) -> float:
 
 
 class Closing(NamedTuple):
-    """How fast an overlap grows: now, if forces are what they were a step ago; on the mean of the
-    step before; and half the time of a step (0: nothing changes meanwhile)."""
+    """Growth of an overlap per time: `now`, with the forces of the last step; `before`: mean over
+    the step; half: half the time of a step (0: springs do not change)."""
 
     now: float
     before: float
@@ -123,8 +123,8 @@ class Closing(NamedTuple):
 def normal_force(law, overlap, closing, reduced, ratio):
     """Force along the normal at an overlap (below 0: a gap), and the stiffness.
 
-    `closing` is how fast it grows, `reduced` the reduced mass, `ratio` the damping ratio of a
-    surface that has its own, else -1.
+    `closing`: growth of the overlap; `reduced`: reduced mass; `ratio`: damping ratio of a surface
+    that has its own, else -1.
     """
 
 

@@ -22,5 +22,4 @@ class Langevin(SoftThermostat):
         return self.kT
 
     def decay(self, timestep: float) -> float:
-        """By how much velocities decay in a step."""
         return math.exp(-self.friction * timestep)

@@ -14,8 +14,8 @@ from mesokit.loops.layout import share
 from mesokit.method.spheres.soft.engine.groups import Lists
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added_scaled, dot, scaled
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
 Pairs = NDArray[np.int64]
 SLIDING, ROLLING = 0, 3  # columns of the two springs of a contact
 
