@@ -1,7 +1,7 @@
 """Parameters of the loops of soft spheres from the section of a case."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,16 +127,9 @@ def others_of(case: Case, made: Made) -> Others | None:
     return Others(solids.reaching(away), solids.pattern, own, solids)
 
 
-class SurfacesTaken(NamedTuple):
-    """The number of surfaces, wall by wall, and for each row of walls, and then each body of the
-    other walls, the number of its surface (rows + bodies,)."""
-
-    number: int
-    place: NDArray[np.int64]
-
-
-def surfaces_of(case: Case) -> SurfacesTaken:
-    """The surfaces of a case."""
+def surfaces_of(case: Case) -> tuple[int, NDArray[np.int64]]:
+    """The number of surfaces, wall by wall, and the number of the surface of each row of walls, and
+    then of each body of the other walls (rows + bodies,)."""
     which = other_walls(case)
     rows = surface_rows(case, which)
     walls = np.zeros(len(rows.names), np.int64)
@@ -145,7 +138,7 @@ def surfaces_of(case: Case) -> SurfacesTaken:
     bodies = np.concatenate([walls, np.array(others, np.int64)])
     rank = np.empty(len(bodies), np.int64)
     rank[np.argsort(bodies, kind="stable")] = np.arange(len(bodies))
-    return SurfacesTaken(len(bodies), np.concatenate([rank[rows.surface], rank[len(walls) :]]))
+    return len(bodies), np.concatenate([rank[rows.surface], rank[len(walls) :]])
 
 
 def _own(case: Case, surface: Surface) -> tuple[float, float]:

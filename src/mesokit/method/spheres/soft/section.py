@@ -95,7 +95,7 @@ class SoftSpheres(Spheres):
         return self.kT if self.turns else 0.0
 
     def reach(self, box: Box) -> float:
-        """The largest distance at which two spheres feel one another."""
+        """The largest distance at which two spheres interact."""
         if isinstance(self.pair, ContactLaw):
             largest = max(kind.diameter * (1 + kind.spread) for kind in self.kinds)
             return float(largest * self.scale(box))

@@ -16,8 +16,8 @@ from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import Row, Summary
 
 RATE_OF_POTENTIALS = 2.5e6  # sphere-steps per second and core (docs/benchmark)
-USUAL_NEIGHBOURS = 66.0  # within the reach, where this was measured
-FEWEST = 500  # spheres for each thread that gain by it
+USUAL_NEIGHBOURS = 66.0  # within the reach in this measurement
+FEWEST = 500  # spheres of a thread, below which it gains nothing
 DEEP = 0.05  # overlap, in diameters, beyond which spheres are not hard
 LONG = 4.0  # steps of the usual length beyond which a fluid of a potential loses its energy
 
@@ -97,9 +97,8 @@ def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> 
 
 def _loses(case: Case) -> bool:
     """Whether contacts take energy."""
-    section, mass = case.spheres, 0.5 * scales.lightest(case)
-    speed = scales.speed_of_collision(case)
-    return section.turns or section.pair.restitution_of(mass, speed) < 1
+    mass, speed = 0.5 * scales.lightest(case), scales.speed_of_collision(case)
+    return case.spheres.turns or case.spheres.pair.restitution_of(mass, speed) < 1
 
 
 def _warnings(case: Case, numbers: dict[str, float]) -> Iterator[str]:

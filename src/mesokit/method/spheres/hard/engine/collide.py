@@ -8,14 +8,7 @@ import numpy as np
 from mesokit.method.spheres.common.near import nearest_image
 from mesokit.method.spheres.common.walls import MOVES, entries, outward, vibration
 from mesokit.method.spheres.hard.collision.protocol import restitution, step_of_energy
-from mesokit.method.spheres.hard.engine.groups import (
-    INERTIA,
-    LAST,
-    MASS,
-    RADIUS,
-    SPIN,
-    VELOCITY,
-)
+from mesokit.method.spheres.hard.engine.groups import INERTIA, LAST, MASS, RADIUS, SPIN, VELOCITY
 from mesokit.method.spheres.hard.engine.motion import bring_to, put_entries
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import METHOD, Counter, normals, unit, words

@@ -37,20 +37,20 @@ def predict(world, rules, spheres, lists, queue, i, now):
     best = now + leaves
     partner = np.int64(LEAVES if leaves < math.inf else NOTHING)
     one = of_row(state, i, r)
-    near, times = lists.count[i], lists.times
+    times = lists.times
     if world.growth != 0.0:
         collide_all(world, rules, state, lists, i, one, now, world.growth)
     else:
         collide_all(world, rules, state, lists, i, one, now, 0.0)
     # The soonest contact; of equal times the one with the lower particle number, so that the order
     # of the list does not matter.
-    for a in range(near):
+    for a in range(lists.count[i]):
         if times[a] <= best:
             j = lists.near[i, a]
             if times[a] < best or (partner >= 0 and number[j] < number[partner]):
                 best, partner = times[a], np.int64(j)
     for w in range(len(world.walls)):
-        time = time_to_wall(world, state, i, w, best)
+        time = time_to_wall(world, one, w, best)
         if time < best:
             best, partner = time, np.int64(FIRST_WALL - w)
         elif math.isnan(time):

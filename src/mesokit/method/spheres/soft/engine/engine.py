@@ -119,9 +119,9 @@ class SoftEngine(SphereEngine):
     @property
     def wall_impulse(self) -> Array:
         """Momentum that each surface has taken since the warm-up, (surfaces, d)."""
-        taken = np.zeros((self.surfaces.number, self.dimension))
-        rows = self.system.taken()[:, : self.dimension]
-        np.add.at(taken, self.surfaces.place, rows * self.timestep)
+        number, places = self.surfaces
+        taken, rows = np.zeros((number, self.dimension)), self.system.taken()[:, : self.dimension]
+        np.add.at(taken, places, rows * self.timestep)
         return taken
 
     @property

@@ -1,8 +1,7 @@
 """Spheres at walls of any shape, by the distance of their centres.
 
-A sphere touches the nearest term of a solid and, in a corner, two others whose surfaces face other
-ways. Between two that face nearly the same way, as where one wall goes on into its periodic image,
-the nearer one acts alone.
+A sphere touches the nearest term of a solid and, in a corner, two others with other normals. Of two
+terms with nearly the same normal, such as a wall and its periodic image, the nearer one acts alone.
 """
 
 from typing import NamedTuple
@@ -26,7 +25,7 @@ from mesokit.scalar.pointer import whole, word
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 MOST = 3  # surfaces that a sphere touches at once
-ALIKE = 0.9  # cosine of the angle between two normals that face nearly the same way
+ALIKE = 0.9  # cosine of the angle between two normals that are nearly the same
 BENT = NUMBER["wave"]  # primitives from here on give a bound of the distance alone
 FEET = 6  # steps to the nearest place of these
 NEARER = 40  # steps of a ray to their surface
@@ -42,7 +41,7 @@ class Place(NamedTuple):
 
 @elementwise
 def shortened(r, pattern):
-    """As many numbers of r as there are axes."""
+    """The components of r along the axes of the box."""
     return "r[{k}]"
 
 
@@ -56,7 +55,7 @@ def lengthened(x):
 
 @seldom
 def nearest_place(tables, x, within, one, other):
-    """The nearest term whose surface faces another way than these two normals do."""
+    """The nearest term whose normal differs from these two: distance, normal and term."""
     least, normal, term = within, scaled(0.0, x), NO_TERM
     cell = home_cell(tables, x)
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
@@ -91,15 +90,10 @@ def part_place(tables, part, x, bound):
 
 @scalar
 def place_at_solid(solid, r, within, one, other):
-    """The nearest term whose surface faces another way than these two normals do."""
-    x = shortened(r, solid.pattern)
-    distance, normal, term = nearest_place(
-        solid.bodies.tables,
-        x,
-        within,
-        shortened(one, solid.pattern),
-        shortened(other, solid.pattern),
-    )
+    """The nearest term as `nearest_place` finds it, with vectors of three components."""
+    tables, axes = solid.bodies.tables, solid.pattern
+    x, a, b = shortened(r, axes), shortened(one, axes), shortened(other, axes)
+    distance, normal, term = nearest_place(tables, x, within, a, b)
     return Place(distance, lengthened(normal), term)
 
 
