@@ -74,9 +74,7 @@ class HardDisplacement(SphereDisplacement):
         return 2 * len(self.axes) * self.diffusion * flown
 
     def coefficient(self) -> tuple[float, str]:
-        if not math.isfinite(self.diffusion):
-            return self.diffusion, ""
-        return self.diffusion, NOTE
+        return self.diffusion, NOTE if math.isfinite(self.diffusion) else ""
 
     def diffusive_from(self) -> float:
         return DECAYED * self.memory if math.isfinite(self.memory) else 0.0
@@ -94,9 +92,8 @@ def enskog(case: Case) -> tuple[float, float]:
     kind, d = section.kinds[0], box.dimension
     alike = len(section.kinds) == 1 and kind.spread == 0 and case.particles > 1
     quiet = not (case.walls or section.gravity or section.heating) and section.kT > 0
-    if not (alike and quiet and section.collision.elastic and section.collision.hard):
-        return math.nan, math.nan
-    if section.collision.rough:
+    pair = section.collision
+    if not (alike and quiet and pair.elastic and pair.hard) or pair.rough:
         return math.nan, math.nan
     kT_over_m = section.kT / kind.mean_mass(d)
     chi = theory.contact_value(section.fraction(box), d)
@@ -116,7 +113,7 @@ class EnskogMemory(VelocityMemory):
         super().__init__(case, observable)
         self.coefficient, self.time = enskog(case)
         self.timestep = float(case.spheres.timestep)
-        # velocities add up to zero, and a component has n - 1 of n degrees of freedom
+        # Velocities add up to zero, so a component has n - 1 of n degrees of freedom.
         self.square = self.coefficient / self.time * (1 - 1 / case.particles)
 
     def expected(self, steps: Integers) -> Array | None:
@@ -134,14 +131,13 @@ class EnskogMemory(VelocityMemory):
         return None if math.isnan(self.time) else NOTE
 
     def diffusion(self, every: int) -> tuple[float, str] | None:
-        coarse = every * self.timestep > COARSE * self.time  # nan: not known, and told
+        coarse = every * self.timestep > COARSE * self.time  # false for nan
         return None if coarse else (self.coefficient, "" if math.isnan(self.time) else NOTE)
 
 
 class HardNeighbours(NeighboursOfSpheres):
-    """g at contact by the equation of state, which the pressure of hard spheres is made of: Z - 1
-    is 2^(d-1) times the packing fraction and g; nan of unlike spheres and of those that lose
-    energy. `diameter` is where, nan of unlike ones."""
+    """g at contact from the equation of state: Z - 1 is 2^(d-1) times the packing fraction and g;
+    nan for unlike spheres and for those that lose energy. `diameter` is nan for unlike spheres."""
 
     def __init__(self, case: Case, observable: Any) -> None:
         super().__init__(case, observable)

@@ -39,6 +39,4 @@ class HardCollision(SphereCollision):
         return Constant(self.restitution)
 
 
-@restitution.register(Constant)
-def _(rule, speed):
-    return rule.value
+restitution.register(Constant)(lambda rule, speed: rule.value)

@@ -63,9 +63,7 @@ class SquareWell(SphereCollision):
         return Well(self.depth, self.width, self.restitution)
 
 
-@restitution.register(Well)
-def _(rule, speed):
-    return rule.value
+restitution.register(Well)(lambda rule, speed: rule.value)
 
 
 @scalar

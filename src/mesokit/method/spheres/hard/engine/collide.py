@@ -92,7 +92,7 @@ def impulse_of(masses, levers, u, n, e, tangential, friction):
 
 @scalar
 def add_impulse(spheres, i, v, impulse, turned):
-    """Give sphere i an impulse, and an angular one."""
+    """Add an impulse and an angular impulse to sphere i."""
     body = spheres.body
     put_entries(spheres.state, i, VELOCITY, added_scaled(v, 1.0 / body[i, MASS], impulse))
     if body[i, INERTIA] > 0.0:
@@ -122,9 +122,9 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     n = scaled(1.0 / distance, apart)
     spheres.hits[i] += 1
     spheres.hits[j] += 1
-    energy, is_step = step_of_energy(rules.pair, distance, state[i, RADIUS] + state[j, RADIUS])
+    masses, radii = 1.0 / body[i, MASS] + 1.0 / body[j, MASS], state[i, RADIUS] + state[j, RADIUS]
+    energy, is_step = step_of_energy(rules.pair, distance, radii)
     if is_step:
-        masses = 1.0 / body[i, MASS] + 1.0 / body[j, MASS]
         total = scaled(over_step(masses, dot(added_scaled(v_i, -1.0, v_j), n), energy), n)
         put_entries(state, i, VELOCITY, added_scaled(v_i, 1.0 / body[i, MASS], total))
         put_entries(state, j, VELOCITY, added_scaled(v_j, -1.0 / body[j, MASS], total))
@@ -134,7 +134,6 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     u = added_scaled(
         surface_velocity(spheres, i, v_i, lever_i), -1.0, surface_velocity(spheres, j, v_j, lever_j)
     )
-    masses = 1.0 / body[i, MASS] + 1.0 / body[j, MASS]
     levers = turning(state, body, i) + turning(state, body, j)
     closing = -dot(u, n)
     e, tangential, friction = restitution(rules.pair, closing), rules.tangential, rules.friction
@@ -146,8 +145,7 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     normal, along = impulse_of(masses, levers, u, n, e, tangential, friction)
     total = added_scaled(along, normal, n)
     # Surfaces of growing spheres move apart after a collision.
-    growing = (state[i, RADIUS] + state[j, RADIUS]) * world.growth / masses
-    total = added_scaled(total, 2.0 * growing, n)
+    total = added_scaled(total, 2.0 * (radii * world.growth / masses), n)
     # The normal part exerts no torque; leaving it out avoids rounding errors.
     add_impulse(spheres, i, v_i, total, outer(lever_i, along))
     add_impulse(spheres, j, v_j, scaled(-1.0, total), outer(lever_j, scaled(-1.0, along)))
@@ -201,7 +199,7 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
     """A sphere touches a wall at `time`, to which it is brought: it is reflected, or sent out."""
     state, body, walls = spheres.state, spheres.body, world.walls
     r, v = bring_to(world, spheres, i, time)
-    _, n = outward(world.walls, w, world, r)
+    _, n = outward(walls, w, world, r)
     _, speed, _ = vibration(walls, w, time)
     wall_velocity = added_scaled(entries(walls, w, MOVES, r), speed, n)
     tally.counts[WALLS] += 1

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.spheres.soft.engine.acting import act, ahead, measure, quantum, turns
+from mesokit.method.spheres.soft.engine.acting import act, measure, turns
 from mesokit.method.spheres.soft.engine.geometry import from_to, from_wall, reach, row
 from mesokit.method.spheres.soft.engine.groups import ENERGY, NEAREST, VIRIAL
 from mesokit.method.spheres.soft.engine.taken import take
@@ -21,26 +21,15 @@ FAR = np.int64(0x7FF0000000000000)  # bits of infinity: those of positive number
 
 
 class Central(NamedTuple):
-    """A potential, the force that counts as one, and its inverse."""
+    """A potential, the force that counts as one, and its inverse; ahead: see `acting`."""
 
     potential: Any
     quantum: float
     scale: float
+    ahead: float = 0.0
 
 
-@quantum.register(Central)
-def _(law):
-    return law.quantum
-
-
-@ahead.register(Central)
-def _(law):
-    return 0.0
-
-
-@turns.register(Central)
-def _(law):
-    return False
+turns.register(Central)(lambda law: False)
 
 
 @act.register(Central)

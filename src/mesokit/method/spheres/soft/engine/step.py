@@ -14,7 +14,7 @@ from mesokit.kernels.kernel import kernel
 from mesokit.loops.cells import outdated
 from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
-from mesokit.method.spheres.soft.engine.acting import act, ahead, quantum, turns
+from mesokit.method.spheres.soft.engine.acting import act, turns
 from mesokit.method.spheres.soft.engine.contact.room import room_of_thread
 from mesokit.method.spheres.soft.engine.groups import DONE, FARTHEST, INVERSE, PENDING
 from mesokit.scalar.elementary import rint
@@ -52,7 +52,7 @@ def advance(worker, counter, steps, law, motion, world, noted, rooms):
             barrier(worker)
             for t in range(worker.threads):
                 farthest = max(farthest, noted[t, FARTHEST])
-            if outdated(farthest, 0.0, world.lists.skin - ahead(law)):
+            if outdated(farthest, 0.0, world.lists.skin - law.ahead):
                 pending = True
                 break
         time = motion.step * float(now.step + np.uint64(1))
@@ -90,12 +90,12 @@ def clear(law, bodies, first, last):
 def kick(law, motion, bodies, i):
     """Change velocity and angular velocity by half a step of forces and torques."""
     half = 0.5 * motion.step
-    per_mass = bodies.velocity[i, INVERSE] * quantum(law)
+    per_mass = bodies.velocity[i, INVERSE] * law.quantum
     for k in range(3):
         acceleration = float(bodies.force[i, k]) * per_mass + motion.gravity[k]
         bodies.velocity[i, k] += half * acceleration
     if turns(law):
-        per_inertia = bodies.spin[i, INVERSE] * quantum(law)
+        per_inertia = bodies.spin[i, INVERSE] * law.quantum
         for k in range(3):
             bodies.spin[i, k] += half * (float(bodies.torque[i, k]) * per_inertia)
 
@@ -104,7 +104,7 @@ def kick(law, motion, bodies, i):
 def foresee(law, motion, bodies, i):
     """Estimate the velocity at the end of the step, with the forces of its start."""
     if turns(law):
-        per_mass = bodies.velocity[i, INVERSE] * quantum(law)
+        per_mass = bodies.velocity[i, INVERSE] * law.quantum
         for k in range(3):
             acceleration = float(bodies.force[i, k]) * per_mass + motion.gravity[k]
             bodies.seen[i, k] = bodies.velocity[i, k] + 0.5 * motion.step * acceleration

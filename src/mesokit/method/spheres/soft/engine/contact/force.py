@@ -8,7 +8,7 @@ the force of the dashpot alone.
 import math
 from typing import Any, NamedTuple
 
-from mesokit.method.spheres.soft.engine.acting import ahead, quantum, turns
+from mesokit.method.spheres.soft.engine.acting import turns
 from mesokit.method.spheres.soft.engine.contact.remembered import Slider, Springs, stretched
 from mesokit.method.spheres.soft.engine.geometry import reach, row
 from mesokit.method.spheres.soft.engine.groups import INVERSE
@@ -60,19 +60,7 @@ class Touch(NamedTuple):
     friction: float
 
 
-@quantum.register(Contact)
-def _(law):
-    return law.quantum
-
-
-@ahead.register(Contact)
-def _(law):
-    return law.ahead
-
-
-@turns.register(Contact)
-def _(law):
-    return True
+turns.register(Contact)(lambda law: True)
 
 
 class Body(NamedTuple):

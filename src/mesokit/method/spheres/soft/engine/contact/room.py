@@ -64,30 +64,24 @@ def store(numbers, start, c, values):
 def load_meeting(numbers, c):
     """Load the properties of the two spheres of contact c."""
     a = load(numbers, MET, c, MEETING)
-    foreseen, velocity = (a[3], a[4], a[5]), (a[6], a[7], a[8])
-    rolled, turning = (a[9], a[10], a[11]), (a[12], a[13], a[14])
-    return Meeting(a[0], a[1], a[2], foreseen, velocity, rolled, turning)
+    return Meeting(a[0], a[1], a[2], a[3:6], a[6:9], a[9:12], a[12:15])
 
 
 @scalar
 def store_meeting(numbers, c, met):
     """Write the properties of the two spheres of contact c."""
-    store(numbers, MET, c, (met.reach, met.other, met.inverse))
-    store(numbers, MET + 3, c, met.foreseen)
-    store(numbers, MET + 6, c, met.velocity)
-    store(numbers, MET + 9, c, met.rolled)
-    store(numbers, MET + 12, c, met.turning)
+    both = met.reach, met.other, met.inverse
+    store(numbers, MET, c, both + met.foreseen + met.velocity + met.rolled + met.turning)
 
 
 @scalar
 def load_springs(numbers, c):
     """Load the springs of contact c."""
     a = load(numbers, KEPT, c, SPRINGS)
-    return Springs((a[0], a[1], a[2]), (a[3], a[4], a[5]))
+    return Springs(a[:3], a[3:])
 
 
 @scalar
 def store_springs(numbers, c, springs):
     """Write the springs of contact c."""
-    store(numbers, KEPT, c, springs.sliding)
-    store(numbers, KEPT + 3, c, springs.rolling)
+    store(numbers, KEPT, c, springs.sliding + springs.rolling)

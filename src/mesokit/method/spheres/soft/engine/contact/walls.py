@@ -2,7 +2,7 @@
 
 from mesokit.geometry.solids.bodies import BODY, NO_TERM, surface_velocity
 from mesokit.geometry.solids.none import Nothing
-from mesokit.method.spheres.soft.engine.acting import act, ahead, beside, measure, measure_beside
+from mesokit.method.spheres.soft.engine.acting import act, beside, measure, measure_beside
 from mesokit.method.spheres.soft.engine.contact.force import (
     NONE,
     Contact,
@@ -103,9 +103,7 @@ def measure_wall(law, touch, springs, readings):
     readings[TOUCHING] += 1
 
 
-@beside.register(Nothing)
-def _(solid, law, i, step, world, room):
-    return 0.0
+beside.register(Nothing)(lambda solid, law, i, step, world, room: 0.0)
 
 
 @measure_beside.register(Nothing)
@@ -116,7 +114,7 @@ def _(solid, law, i, world, readings):
 @scalar
 def touched(law, solid, bodies, i):
     """The surfaces that sphere i touches, or is about to: three at most."""
-    r, within = row(bodies.place, i), reach(bodies, i) + ahead(law)
+    r, within = row(bodies.place, i), reach(bodies, i) + law.ahead
     nowhere = Place(within, NONE, NO_TERM)
     first = place_at_solid(solid, r, within, NONE, NONE)
     second, third = nowhere, nowhere
