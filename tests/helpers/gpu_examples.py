@@ -28,13 +28,13 @@ from mesokit.geometry.solids import contact, virtual_particles  # noqa: F401  wh
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
 from mesokit.geometry.solids.none import Nothing
+from mesokit.loops.neighbours import nearest_image
 from mesokit.method.flock.engine.move import flown
 from mesokit.method.flock.noise import RULES as NOISES
 from mesokit.method.flock.noise import protocol as birds
 from mesokit.method.mpcd import collision, thermostat
 from mesokit.method.mpcd.collision import protocol as rules
 from mesokit.method.mpcd.engine.beads import interactions
-from mesokit.method.mpcd.engine.beads.neighbours import nearest_image
 from mesokit.method.mpcd.engine.cpu.bounce import bounce
 from mesokit.method.mpcd.engine.cpu.grid import Grid, cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.physics import Physics
@@ -274,7 +274,7 @@ def others(d: int) -> dict[str, Calls]:
             (poisson.poisson_number, (1.0, COUNTER, WORD, WHOLE)),
         ],
         "elementary functions": [(elementary.sincos_turn, (1.0,)), (elementary.rint, (1.0,))],
-        "nearest image": [(nearest_image, (Box((8,) * d).kernel((False,) * d), r, r))],
+        "nearest image": [(nearest_image, (Box((8,) * d).kernel((False,) * d), r))],
         "cut cubes": [(share_beyond, (1.0, r)), (share_and_depth, (1.0, r))],
     }
     for energy in ENERGIES:

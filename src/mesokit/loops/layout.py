@@ -65,6 +65,13 @@ def places_of_beads(molecules: int, beads: int) -> Any:
     return (molecule // LANES * beads + np.arange(beads)) * LANES + molecule % LANES
 
 
+def by_number(numbers: Any, rows: Any) -> Any:
+    """Rows (n, ...) in the order of memory, by the particle numbers (n,) that they have there."""
+    found = np.empty(rows.shape, rows.dtype)
+    found[numbers] = rows
+    return found
+
+
 @by_type
 def beads_of(filling):
     """Number of beads of each molecule (a literal 1 for single particles)."""

@@ -12,6 +12,7 @@ from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.none import Nothing
 from mesokit.geometry.solids.solids import Solids, solids_of
 from mesokit.kernels.group import Packing
+from mesokit.loops.layout import by_number
 from mesokit.loops.threads import Threads
 from mesokit.method.flock.engine.memory import Physics, axes_of, make
 from mesokit.method.flock.engine.step import step
@@ -132,6 +133,5 @@ class Flocks:
         self.step = int(state["step"])
 
     def _by_number(self, arrays: NDArray[Any]) -> NDArray[Any]:
-        found = np.empty(arrays.shape[:0:-1], arrays.dtype)  # (2, d, n) to (n, d)
-        found[self.flock.birds.numbers[self.current]] = arrays[self.current].T
-        return found
+        # (2, d, n) to (n, d)
+        return by_number(self.flock.birds.numbers[self.current], arrays[self.current].T)

@@ -8,6 +8,7 @@ that neither the order of birds nor cells nor threads changes a bit.
 import numpy as np
 
 from mesokit.kernels.kernel import inner
+from mesokit.loops.cells import NOWHERE, cell_after, runs_around
 from mesokit.method.flock.cohesion import pull
 from mesokit.method.flock.engine.memory import CHUNK, LANES, PULL, has_cohesion, past, sum_rows
 from mesokit.method.flock.noise.protocol import counted
@@ -132,61 +133,33 @@ def cells_of_axis(axes, k):
 
 
 @scalar
-def place_of_cell(axes, cell):
-    """The place of a cell among the cells: x, y, z."""
-    wide, high = cells_of_axis(axes, 0), cells_of_axis(axes, 1)
-    return cell % wide, cell // wide % high, cell // (wide * high)
-
-
-@scalar
-def next_place(axes, place):
-    """The place of the next cell."""
-    x, y, z = place
-    if x + 1 < cells_of_axis(axes, 0):
-        return x + 1, y, z
-    if y + 1 < cells_of_axis(axes, 1):
-        return 0, y + 1, z
-    return 0, 0, z + 1
-
-
-@scalar
-def wrapped(cell, number):
-    """A cell next to one of so many, around the end."""
-    return cell + number if cell < 0 else (cell - number if cell >= number else cell)
-
-
-@scalar
-def list_runs(axes, starts, place, runs):
+def list_runs(axes, starts, cell, runs):
     """Write down the runs of birds around a cell, three cells along x in one; gives how many."""
-    wide, high, deep = (cells_of_axis(axes, 0), cells_of_axis(axes, 1), cells_of_axis(axes, 2))
-    x, y, z = place
-    beside_y, beside_z = int(high > 1), int(deep > 1)
-    first, last = max(x - 1, 0), min(x + 2, wide)
-    beyond = wide - 1 if x == 0 else 0  # across the end of the box
-    at_end = (wide > 1) & ((x == 0) | (x == wide - 1))
-    number = 0
-    # Sorted birds of three cells along x are one run in memory. At an end of a periodic box the
-    # cell beyond it is a run of its own. At a wall such cells are looked at in vain, as they are
-    # out of reach there.
-    for dz in range(-beside_z, beside_z + 1):
-        for dy in range(-beside_y, beside_y + 1):
-            row = (wrapped(z + dz, deep) * high + wrapped(y + dy, high)) * wide
-            runs[0, number], runs[1, number] = starts[row + first], starts[row + last]
-            number += 1
-            if at_end:
-                runs[0, number], runs[1, number] = starts[row + beyond], starts[row + beyond + 1]
-                number += 1
+    wide, high, deep = cells_of_axis(axes, 0), cells_of_axis(axes, 1), cells_of_axis(axes, 2)
+    x, y, z, number = cell % wide, cell // wide % high, cell // (wide * high), 0
+    # Sorted birds of three cells along x are one run in memory, and those of the cell across an end
+    # of a periodic box another one.
+    for c in range(-1, 2) if deep > 1 else range(1):
+        z_there = cell_after(axes, axes, 2, z, c) if c != 0 else z
+        for b in range(-1, 2) if high > 1 else range(1):
+            y_there = cell_after(axes, axes, 1, y, b)
+            if min(y_there, z_there) != NOWHERE:
+                row = (z_there * high + y_there) * wide
+                for begin, end in runs_around(axes, axes, starts, row, x, min(wide - 1, 1)):
+                    if begin < end:
+                        runs[0, number], runs[1, number] = begin, end
+                        number += 1
     return number
 
 
 @inner
-def look(physics, seen, starts, near, runs, cell, place, pattern):
-    """The sums of all birds of a cell, which is at this place among the cells."""
+def look(physics, seen, starts, near, runs, cell, pattern):
+    """Add up the sums of all birds of a cell, in which there are some."""
     begin, end = starts[cell], starts[cell + 1]
     for k in range(sum_rows(physics)):
         for i in range(begin, end):
             seen.sums[k, i] = 0
-    number = list_runs(physics.axes, starts, place, runs)
+    number = list_runs(physics.axes, starts, cell, runs)
     run, held, first = 0, 0, runs[0, 0]
     # Birds of all runs are copied into one chunk, across borders of runs, until it is full or the
     # runs end. Then every bird of the cell adds up this chunk. Sums are integers, so chunks change

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.loops.neighbours import inverse_lengths
 from mesokit.scalar.jit import by_type, scalar
 
 CHUNK = 240  # birds near a cell that are looked at together: sums of so many fit 32 bits
@@ -130,7 +131,7 @@ def axes_of(size: Sequence[float], closed: Sequence[bool], side: float, most: in
     bits = [HALF if shut else ROUND for shut in closed]
     return Axes(
         tuple(map(float, size)),
-        tuple(0.0 if shut else 1.0 / length for shut, length in zip(closed, size, strict=True)),
+        inverse_lengths(size, closed),
         tuple(2.0**b / length for b, length in zip(bits, size, strict=True)),
         tuple(np.float32(length / 2.0**b) for b, length in zip(bits, size, strict=True)),
         tuple(np.uint64(b) for b in bits),

@@ -6,6 +6,7 @@ Which of the birds of a cell comes first depends on the threads; nothing that is
 import numpy as np
 
 from mesokit.kernels.kernel import inner
+from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.flock.engine.memory import HEADING
 from mesokit.scalar.fixed_point import fixed
@@ -30,18 +31,11 @@ def cell_along(axes, k, place):
     return min(cell, axes.cells[k] - 1)  # a place at a closed end may be rounded up to the length
 
 
-@scalar
-def part(number, worker):
-    """The first and the last of a number of things that a thread takes."""
-    first = number * worker.thread // worker.threads
-    return first, number * (worker.thread + 1) // worker.threads
-
-
 @inner
 def sort(worker, axes, birds, seen, cells, side):
     """Sort birds from `side` to the other side, and copy what they see of one another."""
     n, number = birds.numbers.shape[1], len(cells.starts) - 1
-    first, last = part(n, worker)
+    first, last = share(n, worker.thread, worker.threads)
     count(axes, birds.places, cells, worker.thread, side, first, last)
     barrier(worker)
     add_up(worker, cells, number)
@@ -77,7 +71,7 @@ def looks(birds):
 @inner
 def add_up(worker, cells, number):
     """Birds and work in the cells of this thread."""
-    first, last = part(number, worker)
+    first, last = share(number, worker.thread, worker.threads)
     birds = work = 0
     # From here on threads share cells instead of birds: totals of each share, from which all
     # offsets follow.
@@ -93,7 +87,7 @@ def add_up(worker, cells, number):
 @inner
 def share_out(worker, cells, number):
     """Find the first place of the birds of each cell and thread."""
-    first, last = part(number, worker)
+    first, last = share(number, worker.thread, worker.threads)
     place = work = 0
     # Where this share of cells begins: after the birds in the shares of threads before. Then each
     # count becomes the first place of a thread's birds in a cell, so that `scatter` needs no locks.
@@ -133,18 +127,10 @@ def scatter(axes, birds, seen, homes, ahead, side, first, last):
 @scalar
 def cells_of(worker, cells):
     """The cells that a thread looks at: about the same work for each."""
-    work, number = cells.work, len(cells.work) - 1
-    ends = (0, 0)
+    work, ends = cells.work, (0, 0)
     # Bisection in the running sum of work. The end of a thread is the start of the next one, by the
     # same search, so every cell has exactly one thread.
     for k in range(2):
-        wanted = work[number] * (worker.thread + k) // worker.threads
-        low, high = 0, number
-        while low < high:
-            middle = (low + high) // 2
-            if work[middle] < wanted:
-                low = middle + 1
-            else:
-                high = middle
-        ends = with_item(ends, k, low)
+        wanted = work[len(work) - 1] * (worker.thread + k) // worker.threads
+        ends = with_item(ends, k, np.searchsorted(work, wanted))
     return ends

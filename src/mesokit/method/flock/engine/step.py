@@ -4,7 +4,7 @@ import numpy as np
 
 from mesokit.kernels.kernel import inner, kernel
 from mesokit.loops.threads import barrier
-from mesokit.method.flock.engine.look import look, next_place, place_of_cell
+from mesokit.method.flock.engine.look import look
 from mesokit.method.flock.engine.memory import STRIP
 from mesokit.method.flock.engine.move import move
 from mesokit.method.flock.engine.sort import cells_of, sort
@@ -33,15 +33,14 @@ def look_and_move(worker, now, physics, flock, side):
     near, runs = scratch.near[worker.thread], scratch.runs[worker.thread]
     strip, pattern = scratch.strip[worker.thread], physics.axes.size
     begin, end = cells_of(worker, cells)
-    done, place = cells.starts[begin], place_of_cell(physics.axes, begin)
+    done = cells.starts[begin]
     # Sums at t for the birds of a cell. When a strip of birds has its sums, it turns and moves, t
     # -> t + dt. Other threads may still look at these birds: they read the copies in `seen`, which
     # remain those at t. Cells have about equal work for each thread.
     for cell in range(begin, end):
         looked = cells.starts[cell + 1]
         if looked > cells.starts[cell]:
-            look(physics, seen, cells.starts, near, runs, cell, place, pattern)
-        place = next_place(physics.axes, place)
+            look(physics, seen, cells.starts, near, runs, cell, pattern)
         while looked - done >= STRIP or (cell == end - 1 and looked > done):
             count = min(looked - done, STRIP)
             move(physics, now, birds, seen.sums, strip, side, done, count)

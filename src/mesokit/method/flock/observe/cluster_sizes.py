@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.loops.neighbours import near_pairs
 from mesokit.method.flock.observe.protocol import FlockObservable
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
@@ -119,11 +120,9 @@ def clusters(places: Array, near: float, around: Array) -> NDArray[np.int64]:
     """
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
 
-    inside = np.where(around > 0, np.mod(places, np.where(around > 0, around, 1.0)), places)
-    pairs = cKDTree(inside, boxsize=around).query_pairs(near, output_type="ndarray")
+    one, other, _ = near_pairs(places, near, around)
     n = len(places)
-    links = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    links = coo_matrix((np.ones(len(one), bool), (one, other)), shape=(n, n))
     _, labels = connected_components(links, directed=False)
     return np.bincount(labels)

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.molecule import Molecule
     from mesokit.method.mpcd.solutes import Solutes
     from mesokit.method.mpcd.topology import Links
-    from mesokit.potential import Pair
 
 Floats = NDArray[np.float64]
 InFluid = Callable[[Floats], NDArray[np.bool_]]
@@ -57,7 +56,9 @@ def grown(
 
     Raises RunError where there is no room.
     """
-    limits = np.array([[_nearest(pair, kT) for pair in row] for row in solutes.pairs])
+    limits = np.array(
+        [[nearest_of(pair.kernel(), kT) if pair else 0.0 for pair in row] for row in solutes.pairs]
+    )
     there, before = Placed(solutes.kinds(), box, periods, limits), 0
     # Molecule by molecule, in the order of ids, each among those that are already there. Random
     # numbers follow from the seed and the molecule.
@@ -80,11 +81,6 @@ def grown(
     return there.places
 
 
-def _nearest(pair: Pair | None, kT: float) -> float:
-    """How near two beads may start to one another."""
-    return nearest_of(pair.kernel(), kT) if pair is not None else 0.0
-
-
 def _pool(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
     """Bonds: in any direction or, of stiff molecules, that follow a bond along x."""
     bonds = first_bonds(molecule, kT, d, random)
@@ -102,13 +98,17 @@ def _place(
     in_fluid: InFluid,
 ) -> bool:
     """Add a molecule; whether that worked."""
+    done, d = there.number, len(there.box)
     for _ in range(TRIES):
-        done = there.number
-        first = random.units(len(there.box))[0] * there.box
+        first = random.units(d)[0] * there.box
         if isinstance(molecule, FreeMolecule) and not (molecule.tree and molecule.loops == 0):
-            done_well = _draw_network(there, molecule, kT, first, random, in_fluid)
+            # Springs in equilibrium, as if beads did not feel one another otherwise.
+            normal = np.concatenate([random.normals(d) for _ in range(molecule.length)])
+            places = first + phantom(molecule, kT, normal)
+            done_well = _put(there, places, in_fluid, own=True)
         elif molecule and molecule.topology == "ring":
-            done_well = _grow_ring(there, molecule, pool, first, random, in_fluid)
+            places = first + _polygon(molecule, pool, random)
+            done_well = _put(there, places, in_fluid)
         else:
             done_well = _grow(there, molecule, pool, first, random, in_fluid)
         if done_well:
@@ -152,45 +152,24 @@ def tree_of(molecule: Molecule) -> Links:
     return molecule.tree if isinstance(molecule, FreeMolecule) else molecule.bonds
 
 
-def _draw_network(
-    there: Placed,
-    molecule: FreeMolecule,
-    kT: float,
-    first: Floats,
-    random: Draws,
-    in_fluid: InFluid,
-) -> bool:
-    """Springs in equilibrium, as if beads did not feel one another otherwise."""
-    normal = np.concatenate([random.normals(len(first)) for _ in range(molecule.length)])
-    places = first + phantom(molecule, kT, normal)
+def _put(there: Placed, places: Floats, in_fluid: InFluid, own: bool = False) -> bool:
+    """Add a molecule as it is, if no bead is near another one, or if `own` another of its own."""
     if not (in_fluid(places).all() and all(there.free(place) for place in places)):
         return False
     for place in places:
-        if not there.free(place):  # of a bead of its own
+        if own and not there.free(place):
             return False
         there.add(place)
     return True
 
 
-def _grow_ring(
-    there: Placed,
-    molecule: Molecule,
-    pool: Floats,
-    first: Floats,
-    random: Draws,
-    in_fluid: InFluid,
-) -> bool:
+def _polygon(molecule: Molecule, pool: Floats, random: Draws) -> Floats:
     """A regular polygon in any direction, its bonds as long as they are on average."""
-    d, beads = len(first), molecule.length
+    d, beads = pool.shape[1], molecule.length
     side = math.sqrt(float((pool**2).sum(axis=1).mean()))
     angle = 2.0 * math.pi * np.arange(beads) / beads
     flat = np.stack([np.cos(angle), np.sin(angle)], axis=1) * side / (2 * math.sin(math.pi / beads))
-    ring = first + np.pad(flat, ((0, 0), (0, d - 2))) @ _any_turn(d, random)
-    if not (in_fluid(ring).all() and all(there.free(bead) for bead in ring)):
-        return False
-    for bead in ring:
-        there.add(bead)
-    return True
+    return np.pad(flat, ((0, 0), (0, d - 2))) @ _any_turn(d, random)
 
 
 def _reflected(vectors: Floats, along: Floats) -> Floats:
@@ -209,7 +188,7 @@ def _any_turn(d: int, random: Draws) -> Floats:
 
 
 class Placed:
-    """The beads that have a place already, in cells, to find those nearby.
+    """Beads that have a place already, in cells, to find those nearby.
 
     Beads are of `kinds` (beads,); limits (kinds, kinds): how near those of two kinds may come.
     """
@@ -218,32 +197,34 @@ class Placed:
         self, kinds: NDArray[np.int64], box: Floats, periods: Floats, limits: Floats
     ) -> None:
         self.places, self.number = np.empty((len(kinds), len(box))), 0
-        self.kinds, self.squares = kinds, limits**2
-        self.box, self.limit = box, float(limits.max())
-        limit = self.limit
-        self.inverse = 1.0 / periods
-        self.cells = np.maximum((box / max(limit, 1e-300)).clip(max=1000).astype(int), 1)
+        self.kinds, self.squares, self.limit = kinds, limits**2, float(limits.max())
+        self.box, self.inverse = box, 1.0 / periods
+        self.cells = np.maximum((box / max(self.limit, 1e-300)).clip(max=1000).astype(int), 1)
         self.inside: dict[tuple[int, ...], list[int]] = defaultdict(list)
 
     def add(self, place: Floats) -> None:
         """One more bead."""
         self.places[self.number] = place
-        if self.limit > 0.0:
-            self.inside[self._cell(place)].append(self.number)
+        self.inside[self._cell(place)].append(self.number)
         self.number += 1
 
     def remove_from(self, number: int) -> None:
         """Take the last beads away again, from this number on."""
-        for i in range(self.number - 1, number - 1, -1):
-            if self.limit > 0.0:
-                self.inside[self._cell(self.places[i])].pop()
+        for place in self.places[number : self.number][::-1]:
+            self.inside[self._cell(place)].pop()
         self.number = number
 
     def free(self, place: Floats) -> bool:
         """Whether all beads are farther from the next one than the limit."""
         if self.limit <= 0.0:
             return True
-        near = [i for cell in self._around(place) for i in self.inside.get(cell, ())]
+        # Cells of at least the limit: all within it are in these three along each axis. Of fewer
+        # than three cells each is looked at once.
+        axes = [
+            {(m - 1) % n, m, (m + 1) % n}
+            for m, n in zip(self._cell(place), self.cells.tolist(), strict=True)
+        ]
+        near = [i for cell in itertools.product(*axes) for i in self.inside.get(cell, ())]
         if not near:
             return True
         separation = self.places[near] - place
@@ -253,10 +234,3 @@ class Placed:
 
     def _cell(self, place: Floats) -> tuple[int, ...]:
         return tuple((np.floor(place / self.box * self.cells).astype(int) % self.cells).tolist())
-
-    def _around(self, place: Floats) -> set[tuple[int, ...]]:
-        axes = [
-            ((m - 1) % n, m, (m + 1) % n)
-            for m, n in zip(self._cell(place), self.cells.tolist(), strict=True)
-        ]
-        return set(itertools.product(*axes))

@@ -13,7 +13,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.region import Part, Room, Term
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.surface import Surface
-from mesokit.method.spheres.common.near import nearest_image
+from mesokit.loops.neighbours import nearest_image
 from mesokit.scalar.jit import elementwise, scalar
 from mesokit.scalar.vector import added_scaled, dot, scaled
 from mesokit.seam.engine import Array

@@ -10,7 +10,8 @@ import numpy as np
 
 from mesokit.errors import CaseError, RunError
 from mesokit.kernels.kernel import kernel
-from mesokit.method.spheres.common.near import nearest_image
+from mesokit.loops.cells import NOWHERE, Grid, cell_around, cell_of
+from mesokit.loops.neighbours import inverse_lengths, nearest_image
 from mesokit.method.spheres.common.walls import entries, outward
 from mesokit.method.spheres.hard.collision.hard import Constant
 from mesokit.method.spheres.hard.engine.collide import Rules
@@ -86,13 +87,13 @@ def scattered(
     """Places (n, d) for spheres of these diameters (n,). Raises CaseError where one finds none."""
     n, d = len(diameters), len(size)
     lengths = tuple(float(length) for length in size)
-    inverse = tuple(0.0 if shut else 1.0 / x for shut, x in zip(closed, lengths, strict=True))
-    world = HardWorld(lengths, inverse, (0.0,) * d, 0.0, walls, 0.0, 0.0)
-    cells = tuple(int(max(1, x // diameters.max())) for x in lengths)
-    cells = tuple(min(c, max(1, int(4 * n ** (1 / d)))) for c in cells)
+    world = HardWorld(lengths, inverse_lengths(size, closed), (0.0,) * d, 0.0, walls, 0.0, 0.0)
+    most = max(1, int(4 * n ** (1 / d)))
+    cells = tuple(min(int(max(1, x // diameters.max())), most) for x in lengths)
+    grid = Grid(cells, tuple(c / x for c, x in zip(cells, lengths, strict=True)))
     head, following = np.full(cells, -1, np.int32).ravel(), np.zeros(n, np.int32)
     places = np.zeros((n, d))
-    left = add_all(world, cells, head, following, 0.5 * diameters, places, np.uint64(seed))
+    left = add_all(world, grid, head, following, 0.5 * diameters, places, np.uint64(seed))
     if left:
         raise CaseError(
             f"spheres: no room found for {left} of {n} at random places; expected fewer or smaller"
@@ -101,7 +102,7 @@ def scattered(
 
 
 @kernel
-def add_all(world, cells, head, following, radii, places, seed):
+def add_all(world, grid, head, following, radii, places, seed):
     """Place all spheres; returns the number of those that find no place."""
     # Random sequential addition: each sphere draws places until one is free of all before it, which
     # are linked in cells at least as long as the largest diameter.
@@ -109,11 +110,9 @@ def add_all(world, cells, head, following, radii, places, seed):
         found = False
         for attempt in range(TRIES):
             r = drawn(world, seed, i, attempt)
-            if fits(world, cells, head, following, radii, places, r, radii[i]):
+            if fits(world, grid, head, following, radii, places, r, radii[i]):
                 put_entries(places, i, 0, r)
-                cell = 0
-                for k in range(len(r)):
-                    cell = cell * cells[k] + cell_along_axis(world, cells, k, r)
+                cell = cell_of(grid, r)
                 following[i] = head[cell]
                 head[cell] = i
                 found = True
@@ -134,25 +133,16 @@ def drawn(world, seed, i, attempt):
 
 
 @scalar
-def cell_along_axis(world, cells, k, r):
-    """Number of the cell of a place along an axis."""
-    return min(int(r[k] / world.size[k] * cells[k]), cells[k] - 1)
-
-
-@scalar
-def fits(world, cells, head, following, radii, places, r, radius):
+def fits(world, grid, head, following, radii, places, r, radius):
     """Whether a sphere at r touches neither a wall nor another."""
     for w in range(len(world.walls)):
         distance, _ = outward(world.walls, w, world, r)
         if distance < radius:
             return False
-    for step in range(9 if len(r) == 2 else 27):
-        cell, rest = 0, step
-        for k in range(len(r)):
-            here = cell_along_axis(world, cells, k, r)
-            cell = cell * cells[k] + (here + rest % 3 - 1 + cells[k]) % cells[k]
-            rest //= 3
-        j = head[cell]
+    # Cells are as long as the largest diameter, so a sphere touches only those in cells around it.
+    for n in range(3 ** len(r)):
+        cell = cell_around(grid, world, r, 0.0, n)
+        j = head[cell] if cell != NOWHERE else -1
         while j >= 0:
             apart = nearest_image(world, added_scaled(entries(places, j, 0, r), -1.0, r))
             reach = radius + radii[j]

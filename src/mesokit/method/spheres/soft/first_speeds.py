@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from mesokit.case.case import Case
+from mesokit.loops.neighbours import near_pairs
 from mesokit.method.spheres.common.made import made
-from mesokit.method.spheres.common.near import near_pairs
 from mesokit.method.spheres.common.start.first_state import given_state
 from mesokit.method.spheres.common.start.protocol import Array, Placed
 from mesokit.method.spheres.common.walls import room_of
@@ -73,6 +73,7 @@ def _about_mean(case: Case, velocities: Array) -> Array:
 def _largest_overlap(case: Case, known: Placed) -> float:
     """The largest overlap of two spheres, 0 where none overlap."""
     diameters = made(case).diameters if known.diameters is None else known.diameters
-    size, closed = np.array(case.box.size, float), np.array(room_of(case).closed)
-    pairs, distances = near_pairs(known.positions, size, closed, float(diameters.max()))
-    return float(np.max(0.5 * diameters[pairs].sum(axis=1) - distances, initial=0.0))
+    period = np.where(room_of(case).closed, 0.0, case.box.size)
+    one, other, distances = near_pairs(known.positions, float(diameters.max()), period)
+    touch = 0.5 * (diameters[one] + diameters[other])
+    return float(np.max(touch - distances, initial=0.0))

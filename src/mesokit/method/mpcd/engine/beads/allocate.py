@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.method.mpcd.engine.beads.external import external_of
-from mesokit.method.mpcd.engine.beads.neighbours import GAP, Neighbours
+from mesokit.method.mpcd.engine.beads.neighbours import lists_of
 from mesokit.method.mpcd.engine.beads.state import GROUP, Beads, KindsOfLinks
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.potential.several import Several
@@ -71,37 +71,9 @@ def _neighbours(given: Solutes, box: NDArray[Any], closed: tuple[bool, ...], thr
         return ()
     farthest = max(pair.reach for pair in given.different_pairs)
     d, beads, reach = len(box), given.beads, farthest + given.skin
-    cells = cells_of_beads(reach, box, closed)
     ball = math.pi * reach**2 if d == 2 else 4.0 / 3.0 * math.pi * reach**3
     most = min(beads, int(ROOM * ball / (0.7 * _room_of_one(given, d))) + 16)
-    return (
-        Neighbours(
-            reach=reach,
-            skin=given.skin,
-            cells=cells,
-            inverse=tuple(n / float(length) for n, length in zip(cells, box, strict=True)),
-            cell=np.zeros(beads, np.int32),
-            head=np.zeros(math.prod(cells), np.int32),
-            following=np.zeros(beads, np.int32),
-            count=np.zeros(beads, np.int32),
-            near=np.zeros((beads, most), np.int32),
-            made_at=np.zeros(beads * d),
-            boxes=np.zeros(beads),
-            noted=np.zeros((threads, GAP)),
-        ),
-    )
-
-
-def cells_of_beads(reach: float, box: NDArray[Any], closed: tuple[bool, ...]) -> tuple[int, ...]:
-    """The number of cells along each axis for neighbour lists of this reach."""
-    cells = tuple(int(length / reach) for length in box)
-    cells = tuple(
-        number if number >= 3 or shut else 1 for number, shut in zip(cells, closed, strict=True)
-    )
-    cells = tuple(max(number, 1) for number in cells)
-    if cells[1] == 1:  # images above and below may be displaced along x by any distance
-        cells = (1, *cells[1:])
-    return cells
+    return (lists_of(reach, given.skin, beads, most, box, closed, threads),)
 
 
 def _room_of_one(given: Solutes, d: int) -> float:

@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.case.box import SLIDING, fold
-from mesokit.loops.cells import cell_of, next_along, outdated
+from mesokit.loops.cells import NOWHERE, cell_around, cell_of
 from mesokit.loops.layout import share
+from mesokit.loops.neighbours import GAP, insert, nearest_image, outdated
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.state import AROUND, OWN, bead_of, number_of
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
@@ -23,7 +24,6 @@ from mesokit.scalar.vector import added_scaled, dot, scaled
 
 CROWDED = -1  # the length of a list that did not fit
 MOVED, OFFSET, MADE = 0, 1, 2  # places in `Neighbours.noted`
-GAP = 8  # numbers between those of two threads: each has a cache line of its own
 
 
 class Neighbours(NamedTuple):
@@ -53,6 +53,30 @@ class Neighbours(NamedTuple):
     noted: Any
 
 
+def lists_of(
+    reach: float, skin: float, beads: int, most: int, box: Any, closed: Any, threads: int
+) -> Neighbours:
+    """Lists of at most so many beads, in a box (d,) with closed axes; without any, cells alone."""
+    cells = [max(int(length / reach), 1) for length in box]
+    cells = [n if n >= 3 or shut else 1 for n, shut in zip(cells, closed, strict=True)]
+    if cells[1] == 1:  # images above and below may be displaced along x by any distance
+        cells[0] = 1
+    return Neighbours(
+        reach=reach,
+        skin=skin,
+        cells=tuple(cells),
+        inverse=tuple(n / float(length) for n, length in zip(cells, box, strict=True)),
+        cell=np.zeros(beads, np.int32),
+        head=np.zeros(math.prod(cells), np.int32),
+        following=np.zeros(beads, np.int32),
+        count=np.zeros(beads if most else 0, np.int32),
+        near=np.zeros((beads, most) if most else (0, 1), np.int32),
+        made_at=np.zeros(beads * len(cells)),
+        boxes=np.zeros(beads),
+        noted=np.zeros((threads, GAP)),
+    )
+
+
 @by_type
 def apart(box, r, other):
     """The vector from r to the nearest image of the other."""
@@ -60,22 +84,12 @@ def apart(box, r, other):
 
 
 def _apart(box, r, other):
-    return nearest_image(box, r, other)
-
-
-@scalar
-def nearest_image(box, r, other):
-    """The vector to the nearest image in a box whose images are at rest."""
-    separation = added_scaled(other, -1.0, r)
-    for k in range(len(r)):
-        boxes = rint(separation[k] * box.inverse[k])
-        separation = with_item(separation, k, separation[k] - boxes * box.size[k])
-    return separation
+    return nearest_image(box, added_scaled(other, -1.0, r))
 
 
 def _apart_sliding(box, r, other):
     up = rint((other[1] - r[1]) * box.inverse[1])
-    return nearest_image(box, r, with_item(other, 0, other[0] - up * box.offset))
+    return _apart(box, r, with_item(other, 0, other[0] - up * box.offset))
 
 
 @by_type
@@ -109,16 +123,6 @@ def note_moves(lists, halo, box, thread, places, share_of, zero):
     lists.noted[thread, MOVED] = farthest
 
 
-@scalar
-def lists_outdated(lists, box, worker):
-    """Whether the lists must be made anew; the answer is the same in all threads."""
-    farthest = 0.0
-    for t in range(worker.threads):
-        farthest = max(farthest, lists.noted[t, MOVED])
-    slip = abs(slipped(lists, box, worker.thread))
-    return lists.noted[worker.thread, MADE] == 0.0 or outdated(farthest, slip, lists.skin)
-
-
 @by_type
 def refresh(worker, lists, halo, box, places, zero):
     """Make the lists anew if they may miss a pair; nothing without a pair potential."""
@@ -131,7 +135,8 @@ def _refresh(worker, lists, halo, box, places, zero):
     around = share(number_of(halo, every, AROUND), worker.thread, worker.threads)
     note_moves(lists, halo, box, worker.thread, places, around, zero)
     barrier(worker)
-    if lists_outdated(lists, box, worker):
+    slip, made = abs(slipped(lists, box, worker.thread)), lists.noted[worker.thread, MADE] != 0.0
+    if not made or outdated(lists.noted, MOVED, worker.threads, slip, lists.skin):
         find_cells(lists, halo, box, places, around, zero)
         lists.noted[worker.thread, OFFSET] = offset_of_images(box)
         lists.noted[worker.thread, MADE] = 1.0
@@ -176,54 +181,21 @@ def link(lists, halo, cells):
 @seldom
 def make_list(lists, box, places, i, zero):
     """List all beads within reach of bead i, by id."""
-    d, still, found = len(zero), scaled(0.0, zero), 0
+    d, still, found, most = len(zero), scaled(0.0, zero), 0, lists.near.shape[1]
     mine = load_values(places, np.uint64(i * d), zero)
     r, _, _ = fold(box, mine, still, still)
-    slide = offset_of_images(box)
-    rows, layers = lists.cells[0], lists.cells[0] * lists.cells[1]
-    along_z, _ = next_along(lists, box, d - 1, r[d - 1])
-    along_y, up = next_along(lists, box, 1, r[1])
-    # The 9 or 27 cells around bead i. y is the outer axis, because the image above or below is
-    # displaced along x under shear. So x and its three cells are found anew for each.
-    for b in range(3):
-        x = r[0] - up[b] * slide
-        x -= math.floor(x * box.inverse[0]) * box.size[0]
-        along_x, _ = next_along(lists, box, 0, x)
-        for c in range(3 if d == 3 else 1):
-            layer = along_z[c] if d == 3 else 0
-            if min(along_y[b], layer) < 0:
-                continue
-            row = along_y[b] * rows + layer * layers
-            for a in range(3):
-                if along_x[a] >= 0:
-                    cell = np.uint64(along_x[a] + row)
-                    found = list_cell(lists, box, places, i, mine, cell, found, zero)
-    lists.count[i] = found if found <= lists.near.shape[1] else CROWDED
-
-
-@scalar
-def list_cell(lists, box, places, i, mine, cell, found, zero):
-    """Add the beads of a cell to the list of bead i; returns the length of the list."""
-    square, most = lists.reach * lists.reach, lists.near.shape[1]
-    j = lists.head[cell]
+    slide, square = offset_of_images(box), lists.reach * lists.reach
     # Neighbours are inserted by id. A bead adds up forces in this order, so its sum of floats has
     # the same bits whenever the list was made. `found` counts on beyond a full list, to mark it
     # CROWDED.
-    while j >= 0:
-        separation = apart(box, mine, load_values(places, np.uint64(j * len(zero)), zero))
-        if j != i and dot(separation, separation) <= square:
-            if found < most:
-                put_in_order(lists.near, i, found, j)
-            found += 1
-        j = lists.following[j]
-    return found
-
-
-@scalar
-def put_in_order(near, i, found, j):
-    """Insert j into the list of i."""
-    place = found
-    while place > 0 and near[i, place - 1] > j:
-        near[i, place] = near[i, place - 1]
-        place -= 1
-    near[i, place] = j
+    for n in range(3**d):
+        cell = cell_around(lists, box, r, slide, n)
+        j = lists.head[cell] if cell != NOWHERE else -1
+        while j >= 0:
+            separation = apart(box, mine, load_values(places, np.uint64(j * d), zero))
+            if j != i and dot(separation, separation) <= square:
+                if found < most:
+                    insert(lists.near, i, found, j)
+                found += 1
+            j = lists.following[j]
+    lists.count[i] = found if found <= most else CROWDED

@@ -5,12 +5,11 @@ import math
 import numpy as np
 
 from mesokit.loops.layout import LANES, zeros
-from mesokit.method.mpcd.engine.beads.allocate import cells_of_beads
-from mesokit.method.mpcd.engine.beads.neighbours import GAP as LISTS_GAP
-from mesokit.method.mpcd.engine.beads.neighbours import Neighbours
+from mesokit.loops.neighbours import GAP
+from mesokit.method.mpcd.engine.beads.neighbours import lists_of
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
-from mesokit.method.mpcd.engine.embedded.state import GAP, PARTNERS, Embedded
+from mesokit.method.mpcd.engine.embedded.state import PARTNERS, Embedded
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.potential.thermal import boltzmann_volume
 
@@ -46,7 +45,7 @@ def embedded_of(given: Solutes, numbers: Numbers, threads: int) -> tuple:
             further=further,
             grid=Grid(zero, zero, cells, tuple(1.0 / n for n in cells)),
             marked=np.zeros(numbers.number_of_cells + 1, np.int64),
-            lists=_cells(reach, given.beads, numbers, threads),
+            lists=lists_of(reach, 0.0, given.beads, 0, numbers.box, numbers.closed, threads),
             lane=zeros((threads, most), np.int64),
             partners=zeros((threads, most), np.int32),
             beads=zeros((threads, most * PARTNERS), np.int32),
@@ -59,24 +58,4 @@ def embedded_of(given: Solutes, numbers: Numbers, threads: int) -> tuple:
             taken=zeros((threads, given.beads * d), np.int64),
             faults=zeros((threads, GAP), np.int64),
         ),
-    )
-
-
-def _cells(reach: float, beads: int, numbers: Numbers, threads: int) -> Neighbours:
-    """The cells of beads; their lists of neighbours stay empty."""
-    d, box, none = numbers.dimension, numbers.box, np.zeros(0, np.int32)
-    cells = cells_of_beads(reach, box, numbers.closed)
-    return Neighbours(
-        reach=reach,
-        skin=0.0,
-        cells=cells,
-        inverse=tuple(n / float(length) for n, length in zip(cells, box, strict=True)),
-        cell=np.zeros(beads, np.int32),
-        head=np.zeros(math.prod(cells), np.int32),
-        following=np.zeros(beads, np.int32),
-        count=none,
-        near=none.reshape(0, 1),
-        made_at=np.zeros(beads * d),
-        boxes=np.zeros(beads),
-        noted=np.zeros((threads, LISTS_GAP)),
     )

@@ -12,7 +12,7 @@ import numpy as np
 
 from mesokit.case.box import fold
 from mesokit.kernels.kernel import inner
-from mesokit.loops.cells import next_along
+from mesokit.loops.cells import NOWHERE, cell_around
 from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.neighbours import apart, find_cells, link
@@ -141,27 +141,19 @@ def find_partners(embedded, beads, box, r, path, where):
         return 0
     still, d, found, met = scaled(0.0, r), len(r), 0, False
     place, _, _ = fold(box, r, still, still)
-    rows, layers = lists.cells[0], lists.cells[0] * lists.cells[1]
-    along_z, _ = next_along(lists, box, d - 1, place[d - 1])
-    along_y, _ = next_along(lists, box, 1, place[1])
-    along_x, _ = next_along(lists, box, 0, place[0])
     # Beads in the 9 or 27 cells around the particle; these cells are at least as long as the reach.
     # The list holds beads within reach of a flight of length `travel`. It is kept only if one of
     # them is within reach of the particle's own flight. Forces are integers, so its order is free.
-    for b in range(3):
-        for c in range(3 if d == 3 else 1):
-            layer = along_z[c] if d == 3 else 0
-            for a in range(3):
-                if min(along_x[a], along_y[b], layer) >= 0:
-                    j = lists.head[along_x[a] + along_y[b] * rows + layer * layers]
-                    while j >= 0:
-                        if comes_near(embedded, beads, box, r, embedded.travel, j):
-                            if found < PARTNERS:
-                                at = where[1] * PARTNERS + found
-                                embedded.beads[where[0], at] = j
-                            found += 1
-                            met |= comes_near(embedded, beads, box, r, path, j)
-                        j = lists.following[j]
+    for n in range(3**d):
+        cell = cell_around(lists, box, place, 0.0, n)
+        j = lists.head[cell] if cell != NOWHERE else -1
+        while j >= 0:
+            if comes_near(embedded, beads, box, r, embedded.travel, j):
+                if found < PARTNERS:
+                    embedded.beads[where[0], where[1] * PARTNERS + found] = j
+                found += 1
+                met |= comes_near(embedded, beads, box, r, path, j)
+            j = lists.following[j]
     if not met:
         return 0
     return found if found <= PARTNERS else ALL_BEADS

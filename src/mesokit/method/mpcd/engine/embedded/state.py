@@ -6,7 +6,7 @@ from mesokit.method.mpcd.engine.cpu.physics import field_of
 
 PARTNERS = 24  # beads that a particle of the fluid has on its list; with more it looks at all beads
 ALL_BEADS = -1  # the length of a list that does not hold: the particle looks at all beads
-COUNT, GAP = 0, 8  # where a thread counts the particles near beads; a cache line of its own
+COUNT = 0  # where a thread counts the particles near beads
 # what is noted, of each thread: the step, or 0, and what went wrong
 STEP, WHAT, WHICH = 0, 1, 2
 TOO_FAR, TOO_HARD, TOO_MANY = 1, 2, 3

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
+from mesokit.loops.neighbours import near_pairs
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
@@ -94,17 +95,10 @@ def cluster_sizes(
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
 
     n = len(places)
-    pairs = cKDTree(places, boxsize=period).query_pairs(
-        float(diameters.max()) + gap, output_type="ndarray"
-    )
-    one, other = pairs.T
-    separation = places[one] - places[other]
-    repeats = period > 0
-    separation[:, repeats] -= period[repeats] * np.rint(separation[:, repeats] / period[repeats])
-    near = np.linalg.norm(separation, axis=1) < 0.5 * (diameters[one] + diameters[other]) + gap
+    one, other, distance = near_pairs(places, float(diameters.max()) + gap, period)
+    near = distance < 0.5 * (diameters[one] + diameters[other]) + gap
     ends = (one[near], other[near])
     graph = coo_array((np.ones(len(ends[0]), bool), ends), shape=(n, n))
     _, label = connected_components(graph, directed=False)

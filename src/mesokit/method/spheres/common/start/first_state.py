@@ -11,9 +11,9 @@ from mesokit.case.case import Case
 from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.loops.neighbours import near_pairs
 from mesokit.method.spheres.common.draws import normal_rows
 from mesokit.method.spheres.common.made import Made, made
-from mesokit.method.spheres.common.near import near_pairs
 from mesokit.method.spheres.common.start.lattice import shut
 from mesokit.method.spheres.common.start.protocol import Array, Placed
 
@@ -86,10 +86,10 @@ def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[
     lowest = np.where(closed, beyond, np.inf).min(axis=1)
     if (lowest < -ROUNDING * largest).any():
         raise CaseError(f"positions: sphere {int(lowest.argmin())} lies in a plate")
-    pairs, distances = near_pairs(places, size, closed, largest)
-    gaps = distances - 0.5 * diameters[pairs].sum(axis=1)
+    one, other, distances = near_pairs(places, largest, np.where(closed, 0.0, size))
+    gaps = distances - 0.5 * (diameters[one] + diameters[other])
     if len(gaps) and gaps.min() < -ROUNDING * largest:
-        i, j = pairs[gaps.argmin()]
+        i, j = one[gaps.argmin()], other[gaps.argmin()]
         raise CaseError(f"positions: spheres {i} and {j} overlap by {-gaps.min():.3g}")
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.loops.neighbours import near_pairs
 from mesokit.method.spheres.common.made import Made
-from mesokit.method.spheres.common.near import near_pairs
 from mesokit.method.spheres.common.start.protocol import Array, Placed, SphereStart
 from mesokit.method.spheres.common.walls import other_walls, room_of, surface_rows
 
@@ -44,16 +44,16 @@ def _among_solids(case: Case, diameters: Array, closed: tuple[bool, ...]) -> Arr
     solids, size = solids_of(case), np.array(case.box.size, float)
     random = np.random.default_rng(case.run.seed)
     places, left = np.zeros((len(diameters), len(size))), np.arange(len(diameters))
-    placed = np.zeros(0, np.int64)
+    placed, period = np.zeros(0, np.int64), np.where(closed, 0.0, size)
     # All that have no place yet draw one, again and again. Of two spheres that overlap, the one
     # that comes later in `order` draws again; spheres that have a place come first.
     for _ in range(TRIES):
         places[left] = random.uniform(0.0, 1.0, (len(left), len(size))) * size
         free = left[solids.distance(places[left]) > 0.5 * diameters[left]]
         order = np.concatenate([placed, free])
-        pairs, distances = near_pairs(places[order], size, closed, float(diameters.max()))
-        overlap = distances < 0.5 * diameters[order[pairs]].sum(axis=1)
-        placed = np.setdiff1d(order, order[pairs.max(axis=1)[overlap]])
+        one, other, distances = near_pairs(places[order], float(diameters.max()), period)
+        overlap = distances < 0.5 * (diameters[order[one]] + diameters[order[other]])
+        placed = np.setdiff1d(order, order[np.maximum(one, other)[overlap]])
         left = np.setdiff1d(left, placed)
         if not len(left):
             return places

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.spheres.common.near import nearest_image
+from mesokit.loops.neighbours import nearest_image
 from mesokit.method.spheres.common.walls import MOVES, entries, outward, vibration
 from mesokit.method.spheres.hard.collision.protocol import restitution, step_of_energy
 from mesokit.method.spheres.hard.engine.groups import INERTIA, LAST, MASS, RADIUS, SPIN, VELOCITY

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import RunError
+from mesokit.loops.neighbours import near_pairs
 from mesokit.method.spheres.common.engine import SphereEngine
-from mesokit.method.spheres.common.near import near_pairs
 from mesokit.method.spheres.common.start.first_state import Started
 from mesokit.method.spheres.common.walls import room_of, surface_rows
 from mesokit.method.spheres.hard.checks import wall_contacts
@@ -153,10 +153,10 @@ class EventDriven(SphereEngine):
         pair = self.case.spheres.collision
         if pair.energy_within == 0.0:
             return 0.0
-        diameters, closed = self.diameters(), np.array(self.system.given.closed)
+        diameters = self.diameters()
         most = pair.reach * float(diameters.max())
-        pairs, distances = near_pairs(self.positions(), self.box, closed, most)
-        within = 0.5 * pair.reach * diameters[pairs].sum(axis=1)
+        one, other, distances = near_pairs(self.positions(), most, self._repeats * self.box)
+        within = 0.5 * pair.reach * (diameters[one] + diameters[other])
         return pair.energy_within * int((distances < within).sum())
 
     @property

@@ -47,7 +47,7 @@ class SphereMemory(NamedTuple):
 class HardLists(NamedTuple):
     """Neighbour lists: pairs that may collide before one of them is `shell` away from its centre.
 
-    widest: largest distance of interaction in the window over the sum of radii; cells, per_length
+    widest: largest distance of interaction in the window over the sum of radii; cells, inverse
     (d,): of the grid; centre (n, 4): places where lists were made; cell (n,), head (cells,),
     following (n,), before (n,): the centres of each cell, linked; count (n,), near (n, most): the
     lists; columns (8, most), times (most,): states of one list, and times of their events.
@@ -56,7 +56,7 @@ class HardLists(NamedTuple):
     shell: float
     widest: float
     cells: tuple[int, ...]
-    per_length: tuple[float, ...]
+    inverse: tuple[float, ...]
     centre: Any
     cell: Any
     head: Any

@@ -7,7 +7,8 @@ centres, so that spheres cross no cells.
 
 import math
 
-from mesokit.method.spheres.common.near import nearest_image
+from mesokit.loops.cells import NOWHERE, cell_around, cell_of
+from mesokit.loops.neighbours import nearest_image
 from mesokit.method.spheres.common.walls import entries
 from mesokit.method.spheres.hard.engine.groups import RADIUS
 from mesokit.method.spheres.hard.engine.motion import put_entries
@@ -16,17 +17,9 @@ from mesokit.scalar.vector import added_scaled, dot
 
 
 @scalar
-def cell_along(lists, k, x):
-    """Number of the cell along an axis."""
-    return min(max(int(x * lists.per_length[k]), 0), lists.cells[k] - 1)
-
-
-@scalar
 def link(lists, i, r):
     """Put the centre r of sphere i, in the box, into its cell."""
-    cell = 0
-    for k in range(len(r)):
-        cell = cell * lists.cells[k] + cell_along(lists, k, r[k])
+    cell = cell_of(lists, r)
     after = lists.head[cell]
     lists.cell[i], lists.following[i], lists.before[i] = cell, after, -1
     if after >= 0:
@@ -75,31 +68,13 @@ def renew(world, lists, state, i, r):
 @scalar
 def find(world, lists, state, i, r):
     """Put all spheres that may meet i on its list, and i on theirs; true if there was room."""
-    d, room = len(r), True
-    # Cells around the centre, each at least as long as two centres may be apart and still matter.
-    # With fewer than three cells along an axis `wrapped` has each of them once.
-    for a in range(-1, 2):
-        x = wrapped(world, lists, 0, cell_along(lists, 0, r[0]) + a)
-        for b in range(-1, 2):
-            y = wrapped(world, lists, 1, cell_along(lists, 1, r[1]) + b)
-            for c in range(-1, 2 if d == 3 else 0):
-                z = wrapped(world, lists, 2, cell_along(lists, 2, r[d - 1]) + c) if d == 3 else 0
-                if min(x, y, z) >= 0:
-                    cell = x * lists.cells[1] + y
-                    if d == 3:
-                        cell = cell * lists.cells[2] + z
-                    room &= list_cell(world, lists, state, i, r, cell)
+    room = True
+    # The cells around the centre; each is at least as long as two centres on a list may be apart.
+    for n in range(3 ** len(r)):
+        cell = cell_around(lists, world, r, 0.0, n)
+        if cell != NOWHERE:
+            room &= list_cell(world, lists, state, i, r, cell)
     return room
-
-
-@scalar
-def wrapped(world, lists, k, cell):
-    """The number of a cell along an axis, also beyond the ends of the box; -1 where there is none,
-    or where it is found already, with fewer than three cells."""
-    cells = lists.cells[k]
-    if 0 <= cell < cells:
-        return cell
-    return (cell + cells) % cells if world.inverse[k] > 0.0 and cells > 2 else -1
 
 
 @scalar

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.kernels.group import Packing
+from mesokit.loops.layout import by_number
+from mesokit.loops.neighbours import inverse_lengths
 from mesokit.method.spheres.common.walls import FREQUENCY, PHASE
 from mesokit.method.spheres.hard.engine import groups, run
 from mesokit.method.spheres.hard.engine.collide import COUNTS, SUMS, Flights, Rules, Tally
@@ -118,11 +120,9 @@ class HardSystem:
     def world(self) -> HardWorld:
         """The constants of this window."""
         given, size = self.given, tuple(float(length) for length in self.given.size)
-        pairs = zip(given.closed, size, strict=True)
-        inverse = tuple(0.0 if shut else 1.0 / length for shut, length in pairs)
         gravity = tuple(float(g) for g in given.gravity) or (0.0,) * self.d
         rest = self.growth, self.walls, given.lasting, given.instant
-        return HardWorld(size, inverse, gravity, *rest)
+        return HardWorld(size, inverse_lengths(size, given.closed), gravity, *rest)
 
     def widest(self, shell: float) -> float:
         """The longest distance of the centres of neighbours."""
@@ -259,15 +259,12 @@ class HardSystem:
         """Places, not brought into the box, and velocities (n, d) now, by particle number."""
         places, velocities = np.empty((self.n, self.d)), np.empty((self.n, self.d))
         run.read(self.world, self.spheres, self.now, places, velocities)
-        boxes = np.empty_like(self.spheres.boxes)
-        boxes[self.spheres.number] = self.spheres.boxes
+        boxes = self.by_number(self.spheres.boxes)
         return places + boxes * np.array(self.given.size, float), velocities
 
     def by_number(self, values: NDArray[Any]) -> NDArray[Any]:
         """Rows in the order of particle numbers."""
-        found = np.empty_like(values)
-        found[self.spheres.number] = values
-        return found
+        return by_number(self.spheres.number, values)
 
     # --- checkpoints ----------------------------------------------------------------------------
 

@@ -1,6 +1,6 @@
 """Distances of spheres from one another and from walls."""
 
-from mesokit.method.spheres.common.near import nearest_image as nearest
+from mesokit.loops.neighbours import nearest_image
 from mesokit.method.spheres.common.walls import KIND, MOVES, PLANE, entries, outward, vibration
 from mesokit.method.spheres.soft.engine.groups import REACH
 from mesokit.scalar.jit import scalar
@@ -16,7 +16,7 @@ def row(array, i):
 @scalar
 def from_to(box, place, j, r):
     """The vector that leads from sphere j to r: bit for bit minus that from r to j."""
-    return nearest(box, added_scaled(r, -1.0, row(place, j)))
+    return nearest_image(box, added_scaled(r, -1.0, row(place, j)))
 
 
 @scalar

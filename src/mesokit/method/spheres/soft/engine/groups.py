@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 REACH = 3  # column of `place`: how far a sphere reaches, a radius or half of a cut-off
 INVERSE = 3  # column of `velocity` and `spin`: the inverse of mass and of moment of inertia
 FARTHEST, NEAREST, LARGEST, DONE, PENDING = range(5)  # columns of what threads note
-GAP = 8  # numbers between those of two threads: each has a cache line of its own
 ENERGY, VIRIAL, TOUCHING, READINGS = 0, 1, 7, 8  # columns of the readings of a sphere
 
 

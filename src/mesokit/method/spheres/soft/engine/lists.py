@@ -3,9 +3,10 @@
 import numpy as np
 
 from mesokit.kernels.kernel import kernel
-from mesokit.loops.cells import cell_after, cell_along, cell_of
+from mesokit.loops.cells import cell_after, cell_along, cell_of, runs_around
 from mesokit.loops.layout import share
-from mesokit.method.spheres.soft.engine.geometry import nearest, row
+from mesokit.loops.neighbours import nearest_image
+from mesokit.method.spheres.soft.engine.geometry import row
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
 
@@ -16,20 +17,16 @@ GROUP = 8  # lists are filled up to whole groups, for which loops over vectors n
 def sort(grid, place, cell, begins, order):
     """The order of memory in which spheres of one cell lie together, and where each cell begins."""
     begins[:] = 0
-    # Counting sort: numbers of each cell, their running sum, then places. Taking places moves
-    # `begins` on by one cell, which the last loop reverts. Spheres of one cell keep their order in
-    # memory.
+    # Counting sort: numbers of each cell; their running sum, where cells end; then a place for each
+    # sphere, the last one first, by which ends become begins. Spheres of a cell keep their order.
     for i in range(len(cell)):
         cell[i] = cell_of(grid, row(place, i))
-        begins[cell[i] + 1] += 1
+        begins[cell[i]] += 1
     for c in range(1, len(begins)):
         begins[c] += begins[c - 1]
-    for i in range(len(cell)):
+    for i in range(len(cell) - 1, -1, -1):
+        begins[cell[i]] -= 1
         order[begins[cell[i]]] = i
-        begins[cell[i]] += 1
-    for c in range(len(begins) - 1, 0, -1):
-        begins[c] = begins[c - 1]
-    begins[0] = 0
 
 
 @kernel
@@ -57,7 +54,7 @@ def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
                 side = off(grid, 1, y, y_cell, b)
                 if min(y_there, z_there) >= 0 and up * up + side * side <= grid.farthest:
                     line = grid.cells[0] * (y_there + grid.cells[1] * z_there)
-                    for span in spans(grid, box, begins, line, x_cell):
+                    for span in runs_around(grid, box, begins, line, x_cell, grid.wide[0]):
                         found = list_span(columns, box, lists, i, span, found, beside)
         if lists.halves:
             lists.own[i] = own_first(lists, i, found, first)
@@ -76,20 +73,6 @@ def off(grid, k, x, here, offset):
 
 
 @scalar
-def spans(grid, box, begins, line, here):
-    """Spans of memory with the spheres of the cells around one along x: one, and another for those
-    beyond an end of the box."""
-    low, high, cells = here - grid.wide[0], here + grid.wide[0], grid.cells[0]
-    middle = begins[line + max(low, 0)], begins[line + min(high, cells - 1) + 1]
-    other = (0, 0)
-    if box.inverse[0] > 0.0 and low < 0:
-        other = begins[line + low + cells], begins[line + cells]
-    elif box.inverse[0] > 0.0 and high >= cells:
-        other = begins[line], begins[line + high - cells + 1]
-    return middle, other
-
-
-@scalar
 def list_span(columns, box, lists, i, span, found, beside):
     """Add those between two places in memory; how many are listed then.
 
@@ -102,7 +85,7 @@ def list_span(columns, box, lists, i, span, found, beside):
     beyond, reaches = columns[3, i] + lists.skin, columns[3, begin:whole]
     # All squared distances of a span, up to a whole vector beyond its end.
     for k in range(np.uint64(whole - begin)):
-        separation = nearest(box, (x - xs[k], y - ys[k], z - zs[k]))
+        separation = nearest_image(box, (x - xs[k], y - ys[k], z - zs[k]))
         far = beyond + reaches[k]
         beside[k] = 1 if dot(separation, separation) <= far * far else 0
     if begin <= i < end:

@@ -11,15 +11,16 @@ import math
 import numpy as np
 
 from mesokit.kernels.kernel import kernel
-from mesokit.loops.cells import outdated
 from mesokit.loops.layout import share
+from mesokit.loops.neighbours import nearest_image, outdated
 from mesokit.loops.threads import barrier
 from mesokit.method.spheres.soft.engine.acting import act, turns
 from mesokit.method.spheres.soft.engine.contact.room import room_of_thread
+from mesokit.method.spheres.soft.engine.geometry import row
 from mesokit.method.spheres.soft.engine.groups import DONE, FARTHEST, INVERSE, PENDING
-from mesokit.scalar.elementary import rint
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import METHOD, Counter, normals, words
+from mesokit.scalar.vector import added_scaled
 
 BATH, BATH_OF_SPINS = METHOD + np.uint64(1), METHOD + np.uint64(2)
 
@@ -50,9 +51,8 @@ def advance(worker, counter, steps, law, motion, world, noted, rooms):
                 farthest = max(farthest, moved(world.bodies, world.box, world.lists, i))
             mine[FARTHEST] = farthest
             barrier(worker)
-            for t in range(worker.threads):
-                farthest = max(farthest, noted[t, FARTHEST])
-            if outdated(farthest, 0.0, world.lists.skin - law.ahead):
+            skin = world.lists.skin - law.ahead
+            if outdated(noted, FARTHEST, worker.threads, 0.0, skin):
                 pending = True
                 break
         time = motion.step * float(now.step + np.uint64(1))
@@ -162,9 +162,7 @@ def fly(bodies, box, i, k, time):
 @scalar
 def moved(bodies, box, lists, i):
     """Square of the displacement since lists were made; infinite if it is not a number."""
-    square = 0.0
-    for k in range(3):
-        displacement = bodies.place[i, k] - lists.made_at[i, k]
-        displacement -= box.size[k] * rint(displacement * box.inverse[k])
-        square += displacement * displacement
+    gone = added_scaled(row(bodies.place, i), -1.0, row(lists.made_at, i))
+    x, y, z = nearest_image(box, gone)
+    square = x * x + y * y + z * z
     return square if square >= 0.0 else np.inf

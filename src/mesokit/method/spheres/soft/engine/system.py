@@ -10,6 +10,8 @@ from mesokit.errors import RunError
 from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.group import Packing
+from mesokit.loops.layout import by_number
+from mesokit.loops.neighbours import GAP, inverse_lengths
 from mesokit.loops.threads import Threads
 from mesokit.method.spheres.common.walls import AMPLITUDE, AXIS, KIND, PLACE, PLANE
 from mesokit.method.spheres.soft.engine import groups
@@ -97,7 +99,7 @@ class SoftSystem:
         self.cell, self.order = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
         self.scratch = np.zeros((threads, n + GROUP), np.int64)
-        self.noted = np.zeros((threads, groups.GAP))
+        self.noted = np.zeros((threads, GAP))
         surfaces = len(given.rows) + (0 if given.others is None else len(given.others.own))
         self.rooms = rooms(threads, surfaces)
         self.noted.view(np.int64)[:, groups.NEAREST] = np.float64(np.inf).view(np.int64)
@@ -279,9 +281,7 @@ class SoftSystem:
 
     def by_number(self, rows: NDArray[Any]) -> NDArray[Any]:
         """Rows in the order of memory, by particle number."""
-        found = np.empty_like(rows)
-        found[self.bodies.number] = rows
-        return found
+        return by_number(self.bodies.number, rows)
 
     def readings(self, time: float) -> NDArray[np.int64]:
         """Readings of every sphere, by number, in quanta; see `acting.measure`."""
@@ -329,8 +329,7 @@ class SoftSystem:
 def _box(given: SoftSetup) -> Box:
     size = [*given.size, 1.0, 1.0][:3]
     shut = [*given.closed, True, True][:3]
-    inverse = [0.0 if closed else 1.0 / length for length, closed in zip(size, shut, strict=True)]
-    return Box(_three(size), _three(inverse))
+    return Box(_three(size), _three(inverse_lengths(size, shut)))
 
 
 def _three(numbers: Any, kind: type = float) -> tuple[Any, Any, Any]:
