@@ -1,4 +1,4 @@
-"""The part of an engine of spheres that does not depend on how they move: what observables read."""
+"""Base of the engines of spheres, with the readings for observables."""
 
 from abc import abstractmethod
 from typing import Any

@@ -80,20 +80,20 @@ def wall_contacts(case: Case) -> Array:
     each row of walls, (walls, 4)."""
     pair, found = case.spheres.collision, []
 
-    def said(surface: Surface, name: str, usual: float | None) -> float | None:
+    def value_of(surface: Surface, name: str, usual: float | None) -> float | None:
         own = None if surface.contact is None else getattr(surface.contact, name)
         return usual if own is None else own
 
     for _, surface in surface_rows(case).surfaces:
-        tangential = said(surface, "tangential", pair.tangential)
-        friction = said(surface, "friction", pair.friction)
+        tangential = value_of(surface, "tangential", pair.tangential)
+        friction = value_of(surface, "friction", pair.friction)
         warm = surface.rule == "diffuse"
         found.append(
             (
-                said(surface, "restitution", -1.0),
+                value_of(surface, "restitution", -1.0),
                 -1.0 if surface.rule == "slip" else tangential,
                 math.inf if friction is None else friction,
-                said(surface, "temperature", case.spheres.kT) if warm else 0.0,
+                value_of(surface, "temperature", case.spheres.kT) if warm else 0.0,
             )
         )
     return np.array(found, float).reshape(-1, 4)

@@ -67,7 +67,7 @@ def timestep_of(case: Case) -> float:
 
 
 def usual_timestep(case: Case) -> float:
-    """Time of a step unless the case says one."""
+    """Time of a step without `spheres.timestep`."""
     law = case.spheres.pair
     if isinstance(law, ContactLaw):
         time = shortest_contact(case)

@@ -30,7 +30,7 @@ def touching(r, v, reach, growth):
 @family("collision rule of hard spheres", "rule", "mesokit.sphere_collision")
 @component
 class SphereCollision(ABC):
-    """What two spheres do to one another when they touch.
+    """Collision rule of two hard spheres.
 
     The tangential velocity of the contact after a collision is minus `tangential` times that
     before, unless the impulse would be more than `friction` times the normal one (Walton 1993): -1

@@ -83,7 +83,7 @@ def list_cell(world, lists, state, i, r, cell):
     most, j, room = lists.near.shape[1], lists.head[cell], True
     mine = state[i, RADIUS] * lists.widest + 2.0 * lists.shell
     # Two spheres can meet before either is renewed if their centres are nearer than both radii and
-    # two shells. Lists are mutual, so `forget` can take a sphere off all of them.
+    # two shells. Lists are mutual, so `forget` can remove a sphere from all of them.
     while j >= 0:
         apart = nearest_image(world, added_scaled(entries(lists.centre, j, 0, r), -1.0, r))
         reach = mine + state[j, RADIUS] * lists.widest

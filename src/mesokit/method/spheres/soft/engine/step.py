@@ -38,8 +38,8 @@ def advance(worker, counter, steps, law, motion, world, noted, rooms):
     done, pending = 0, mine[PENDING] != 0.0
     # Half a kick (v: t -> t + dt/2), the drift (r: t -> t + dt), forces at t + dt, half a kick.
     # Each thread writes its own spheres; the barriers are before and after forces, which read those
-    # of others. All threads see the same longest displacement, so all leave for new lists together.
-    # Then forces are pending: the call with new lists begins with them.
+    # of others. All threads find the same longest displacement, so they return for new lists
+    # together. Then forces are pending: the call with new lists begins with them.
     while done < steps:
         now = Counter(counter.seed, counter.step + np.uint64(done))
         if not pending:

@@ -20,7 +20,7 @@ SOLID_SPHERES = 2 / 7  # tangential over normal stiffness: sliding and pressing 
 @family("pair law of soft spheres", "rule", "mesokit.soft_pair")
 @component
 class PairLaw(ABC):  # noqa: B024  each sort of law has its own questions
-    """What two soft spheres do to one another."""
+    """Force law of two soft spheres."""
 
 
 PairLaw.register(Pair)  # type: ignore[type-abstract]
@@ -28,8 +28,8 @@ PairLaw.register(Pair)  # type: ignore[type-abstract]
 
 @component
 class ContactLaw(PairLaw):
-    """What two spheres do to one another that touch: a force along the normal, which a subclass
-    gives, friction and resistance to rolling (Cundall and Strack 1979; Luding 2008)."""
+    """Force law of two spheres that touch: a force along the normal, which a subclass gives,
+    friction and resistance to rolling (Cundall and Strack 1979; Luding 2008)."""
 
     friction: float = param(
         0.0,
@@ -130,9 +130,8 @@ def normal_force(law, overlap, closing, reduced, ratio):
 
 @scalar
 def rate_of_now(overlap, closing, spring, stiffness, damping, reduced):
-    """The rate at which an overlap grows, to second order in the step: `closing.now`, and what half
-    a step of the change of the pair's own force adds; where spheres have just touched all of that
-    force is new."""
+    """The growth of an overlap per time, to second order in the step: `closing.now`, and half a
+    step of the change of the pair's own force; at the first touch all of this force is new."""
     per_mass = closing.half / reduced
     grown = 2.0 * closing.half * closing.before
     more = -spring

@@ -13,12 +13,12 @@ from mesokit.method.spheres.soft.engine.contact.remembered import Springs
 from mesokit.method.spheres.soft.engine.taken import WIDTH
 from mesokit.scalar.jit import elementwise, for_each, scalar
 
-BATCH = 64  # contacts; what they need fits in the first-level cache
+BATCH = 64  # contacts; their data fit in the first-level cache
 GROUP = 8  # of which so many are a vector at most
 ROW = np.uint64(BATCH + 8)
-# patterns of what is loaded
+# patterns of `load`
 COUNT, VECTOR, MEETING, SPRINGS = (0,) * 3, (0.0,) * 3, (0.0,) * 15, (0.0,) * 6
-# rows of numbers: where the vector, what the two have and springs begin, and the bound of forces
+# first rows of numbers: separation, Meeting, springs, bound of forces
 SEPARATION, MET, KEPT, BOUND, NUMBERS = 0, 3, 18, 24, 25
 FORCE, TORQUE, BACK, COUNTS = 0, 3, 6, 9  # rows of counts: on the one, and the torque on the other
 FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # sphere, partner, contact
