@@ -56,10 +56,9 @@ def grown(
     smooth = np.tile([1.0, -1.0, 0.0, 0.0], (len(walls), 1))
     rules = Rules(Constant(1.0), -1.0, 0.0, smooth, np.uint64(seed))
     most = JAMMED / float(diameters.mean())
-    setup = HardSetup(
-        size, closed, (), small * diameters, ones, ones, walls, rules, 0.0, window,
-        instant=INSTANT * window, growth=growth, most=most,
-    )  # fmt: skip
+    bodies = small * diameters, ones, ones
+    times = {"lasting": 0.0, "window": window, "instant": INSTANT * window}
+    setup = HardSetup(size, closed, (), *bodies, walls, rules, **times, growth=growth, most=most)
     system = HardSystem(setup)
     v = np.random.default_rng(seed).normal(size=(n, d))
     system.fill(places, v / math.sqrt((v * v).mean()), np.zeros((n, 1 if d == 2 else 3)))
