@@ -138,7 +138,7 @@ from mesokit.method.spheres.common.observe.velocity_cumulant import (
 )
 from mesokit.method.spheres.common.observe.wall_force import WallForce as WallForce
 from mesokit.method.spheres.common.start.from_file import FileStart as FileStart
-from mesokit.method.spheres.common.start.from_run import RunStart as RunStart
+from mesokit.method.spheres.common.start.from_file import RunStart as RunStart
 from mesokit.method.spheres.common.start.lattice import LatticeStart as LatticeStart
 from mesokit.method.spheres.common.start.poured import PouredStart as PouredStart
 from mesokit.method.spheres.common.start.protocol import SphereStart as SphereStart

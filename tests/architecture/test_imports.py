@@ -65,8 +65,9 @@ ROWS = {
     "method/mpcd/observe/": (*MPCD, "observe"),
     "method/spheres/": SPHERES,
     "method/spheres/hard/engine/system.py": (*SPHERES, "processes.signals"),
-    "method/spheres/common/start/from_file.py": (*SPHERES, "io.snapshot_file"),
-    "method/spheres/common/start/from_run.py": (*SPHERES, "io.earlier_spheres"),
+    "method/spheres/common/start/from_file.py": (
+        *SPHERES, "io.earlier_spheres", "io.snapshot_file",
+    ),
     "method/flock/": (
         "case", "errors", "geometry", "io", "loops", "method.flock", "observe", "processes.cores",
         "scalar", "seam", "statistics", "theory",
@@ -79,7 +80,7 @@ ROWS = {
     "io/": ("case", "errors", "geometry", "io", "seam"),
     "report/": ("case", "errors", "geometry", "io", "observe", "report", "seam"),
     "report/flow/state.py": ("case", "seam"),
-    "report/flow/moving_plates.py": ("case", "method.spheres.common.wall", "report"),
+    "report/flow/moving_plates.py": ("case", "method.spheres.common.walls", "report"),
     "report/flow/shaded.py": ("report", "kernels.kernel"),
     "run/": ("case", "errors", "io", "observe.shared", "processes", "report", "run", "seam"),
     "run/loop.py": ("case", "kernels.kept", "processes", "report", "run", "seam"),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mesokit import WCA, Box, Case, LennardJones, Run, Simulation, SoftSpheres
-from mesokit.method.spheres.common.start.from_run import RunStart
+from mesokit.method.spheres.common.start.from_file import RunStart
 from mesokit.method.spheres.soft.scales import timestep_of
 from mesokit.seam.method import method_of
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from mesokit import Box, Case, HardSpheres, Plates, Run, SphereKind
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.engine import SphereEngine
 from mesokit.method.spheres.common.made import made
-from mesokit.method.spheres.common.moments import moments
 
 
 def hard(observe, size=(9, 9), walls=(), **spheres):
@@ -78,7 +78,7 @@ class FakeSpheres:
         return self.made.diameters
 
     def moments(self, axes, bins, ids=None):
-        return moments(self, axes, bins, ids)
+        return SphereEngine.moments(self, axes, bins, ids)
 
     def energies(self):
         return {"translation": self.totals()[2], "rotation": 1.0, "potential": 0.0}

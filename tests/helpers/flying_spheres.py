@@ -9,7 +9,7 @@ from mesokit.geometry.shape import Wall
 from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.section import Spheres
-from mesokit.method.spheres.common.start.thermal import spins, velocities
+from mesokit.method.spheres.common.start.first_state import thermal_spins, thermal_velocities
 from mesokit.observe import Observable
 from mesokit.seam.method import InitialState, Method, Summary
 
@@ -35,9 +35,9 @@ class Flying:
         seed, kT = self.case.run.seed, self.case.spheres.kT
         self.r = placed.positions.copy()
         self.d = self.made.diameters if placed.diameters is None else placed.diameters
-        drawn = velocities(seed, self.made, kT, self.dimension)
+        drawn = thermal_velocities(seed, self.made, kT, self.dimension)
         self.v = drawn if placed.velocities is None else placed.velocities
-        drawn = spins(seed, self.made, kT, self.dimension)
+        drawn = thermal_spins(seed, self.made, kT, self.dimension)
         self.w = drawn if placed.spins is None else placed.spins
 
     def advance(self, steps, measure=()):

@@ -12,8 +12,7 @@ import mesokit
 from mesokit import Box, Case, CaseError, Run, Simulation, Trajectory
 from mesokit.method.spheres.common.kinds import SphereKind
 from mesokit.method.spheres.common.section import Spheres
-from mesokit.method.spheres.common.start.from_file import FileStart
-from mesokit.method.spheres.common.start.from_run import RunStart
+from mesokit.method.spheres.common.start.from_file import FileStart, RunStart
 
 SPREAD = (SphereKind(0.8, density=2.0, spread=0.2), SphereKind(1.2, share=0.5))
 EQUAL = (SphereKind(0.8, density=2.0), SphereKind(1.2, share=0.5))

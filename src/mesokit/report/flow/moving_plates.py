@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mesokit.case.case import Case
-from mesokit.method.spheres.common.wall import rows as columns
-from mesokit.method.spheres.common.wall.surfaces import other_walls, surface_rows
+from mesokit.method.spheres.common import walls as columns
+from mesokit.method.spheres.common.walls import other_walls, surface_rows
 from mesokit.report.flow.data import Array
 
 

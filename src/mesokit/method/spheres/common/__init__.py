@@ -1,1 +1,1 @@
-"""What methods of spheres share: disks in 2D and spheres in 3D, with their sizes and masses."""
+"""Parts that both methods of spheres share: disks in 2D and spheres in 3D."""

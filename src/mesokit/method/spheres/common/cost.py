@@ -1,21 +1,22 @@
-"""What spheres cost by event-driven dynamics and as soft spheres: estimates from measured costs.
+"""Estimated cost of event-driven dynamics and of soft spheres, and the summary that shows it.
 
 The constants were measured on 2026-11-23 on one core of an AMD EPYC (`examples/which_method.py`);
 estimates are good to a factor of two, ratios of the two methods too.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 from mesokit import theory
+from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.box import Box
+from mesokit.case.case import Case
+from mesokit.case.trajectory import stored_bytes
+from mesokit.case.warnings import run_warnings
 from mesokit.method.spheres.common.kinds import ball_volume
-
-if TYPE_CHECKING:
-    from mesokit.case.box import Box
-    from mesokit.case.case import Case
-    from mesokit.method.spheres.common.section import Spheres
+from mesokit.method.spheres.common.section import Spheres
+from mesokit.seam.method import Row, Summary
 
 COLLISION = {2: 0.45e-6, 3: 0.7e-6}  # seconds, of two hard spheres
 RENEWAL = {2: 0.7e-6, 3: 1.4e-6}  # seconds, of the list of a hard sphere
@@ -31,8 +32,8 @@ DENSEST = 0.7  # packing fraction up to which rates are estimated
 
 
 class Flight(NamedTuple):
-    """Spheres as they fly at the start: how many, per volume, in how many dimensions, of which
-    diameter; mean speed (per time), and collisions of one per time."""
+    """Free flight at the start: number of spheres and number per volume; dimension; diameter; mean
+    speed; rate: collisions of a sphere per time."""
 
     number: int
     density: float
@@ -58,7 +59,7 @@ class Flight(NamedTuple):
 
 
 def flight_of(section: Spheres, box: Box) -> Flight | None:
-    """Spheres at the start by Enskog, all as the mean of their kinds; None of spheres at rest.
+    """Free flight by Enskog of spheres that are the mean of their kinds; None if kT is 0.
 
     Examples
     --------
@@ -83,8 +84,7 @@ def flight_of(section: Spheres, box: Box) -> Flight | None:
 def hard_seconds(flight: Flight) -> float:
     """Seconds of a core for a unit of time of event-driven dynamics."""
     d = flight.dimension
-    each = 0.5 * flight.rate * COLLISION[d] + flight.renewals * RENEWAL[d]
-    return flight.number * each
+    return flight.number * (0.5 * flight.rate * COLLISION[d] + flight.renewals * RENEWAL[d])
 
 
 def soft_seconds(number: int, listed: float, rubs: bool) -> float:
@@ -119,3 +119,31 @@ def comes_to_rest(case: Case, loses: bool, heated: bool) -> bool:
     contacts = [surface.contact for surface in surfaces if surface.contact is not None]
     shaken = any(c.amplitude > 0 or c.temperature is not None for c in contacts)
     return bool(case.spheres.gravity) and loses and not (shaken or heated)
+
+
+def summary_of(
+    case: Case,
+    own: Iterable[Row],
+    beside: Iterable[Row],
+    numbers: dict[str, Any],
+    note: str,
+    warnings: Iterable[str],
+) -> Summary:
+    """The summary with the rows of a method; `beside`: rows on the cost of the other method.
+
+    `numbers` has "packing_fraction" and "seconds"; `note` is on the run time.
+    """
+    section, seconds = case.spheres, numbers["seconds"]
+    memory = case.particles * section.bytes_each + 200_000_000
+    stored = stored_bytes(case.trajectory, case.groups, case.box.dimension, case.run.steps)
+    rows = [
+        ("spheres", f"{case.particles:,}".replace(",", " "), ""),
+        ("packing fraction", number(numbers["packing_fraction"]), ""),
+        *own,
+        ("run time", duration_text(max(seconds, 0.1)), note),
+        *beside,
+        ("memory", size_text(memory), "estimate"),
+        *([("trajectory", size_text(stored), "estimate")] if stored else []),
+    ]
+    warnings = (*run_warnings(case, memory, stored), *warnings)
+    return Summary(tuple(rows), warnings, seconds, numbers, memory)

@@ -1,4 +1,4 @@
-"""Spheres as trajectories, files for other programs and pictures know them."""
+"""Groups and kinds of spheres, for trajectories, files, pictures and observables."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,7 @@ HAVE = ("position", "velocity", "spin", "image", "id", "mass", "diameter")
 
 def groups(case: Case) -> tuple[Group, ...]:
     """One group, kind after kind."""
-    section, box = case.spheres, case.box
-    scale = section.scale(box)
+    section, box, scale = case.spheres, case.box, case.spheres.scale(case.box)
     kinds = tuple(
         Kind(kind.mean_mass(box.dimension), number, kind.name or "", kind.diameter * scale)
         for kind, number in zip(section.kinds, section.counts(box), strict=True)

@@ -1,4 +1,4 @@
-"""What every single sphere of a case is: its diameter, mass, moment of inertia and kind."""
+"""Diameter, mass, moment of inertia and kind of each sphere of a case."""
 
 from typing import NamedTuple
 
@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.method.spheres.common.draws import uniform_rows
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
 SIZES = 60  # purpose of the random numbers of diameters, above METHOD
 INERTIA = {2: 1 / 8, 3: 1 / 10}  # moment of inertia over m diameter^2 of a disk and a sphere
 

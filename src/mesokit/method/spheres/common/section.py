@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mesokit.method.spheres.hard.collision.protocol import SphereCollision
     from mesokit.method.spheres.hard.heating.protocol import Heating
 
+KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 USUAL_FRACTION = 0.3  # of the box that spheres fill, unless anything is said
 MOST_PARTICLES = 2**31 - 1  # numbers of random words are 32-bit
 AMOUNTS = ("number", "density", "packing_fraction")
@@ -71,8 +72,7 @@ class Spheres:
 
     @model_validator(mode="after")
     def _diameters(self) -> Spheres:
-        """Kinds without a diameter have the usual one, and so has the kind that is there unless
-        kinds are said."""
+        """Fill in the usual diameter, also of the kind that a case without kinds has."""
         usual = self.usual_diameter
         unsaid = ONE if usual == ONE.diameter else SphereKind(usual)
         kinds = tuple(unsaid if kind is ONE else kind.filled_in(usual) for kind in self.kinds)
@@ -86,7 +86,7 @@ class Spheres:
 
     @property
     def energy_source(self) -> Heating | None:
-        """What puts energy in at fixed times, None where nothing does."""
+        """The source of energy at fixed times, None without."""
         return None
 
     @property
@@ -96,7 +96,7 @@ class Spheres:
 
     @property
     def usual_diameter(self) -> float:
-        """The diameter of kinds that say none."""
+        """The diameter of kinds without one."""
         return 1.0
 
     @field_validator("gravity")
@@ -109,7 +109,7 @@ class Spheres:
         return gravity if any(gravity) else ()
 
     def check(self, box: Box) -> None:
-        """Raise CaseError for what does not fit the box."""
+        """Raise CaseError for a bad number of axes or spheres in this box."""
         d = box.dimension
         if self.gravity and len(self.gravity) != d:
             raise CaseError(
@@ -130,7 +130,7 @@ class Spheres:
             self.require_room(box)
 
     def _amount(self) -> tuple[str, float | None]:
-        """The key that says how many there are, and what it says."""
+        """The key of the amount of spheres, and its value."""
         key = next((key for key in AMOUNTS if getattr(self, key) is not None), AMOUNTS[-1])
         return f"spheres.{key}", getattr(self, key)
 
@@ -140,7 +140,7 @@ class Spheres:
         require_memory(where, count if given is None else given, count * self.bytes_each)
 
     def require_room(self, box: Box) -> None:
-        """Raise CaseError where equal spheres that do not overlap can never be so many."""
+        """Raise CaseError for equal spheres denser than the closest packing."""
         spread = any(kind.spread for kind in self.kinds)
         equal = not spread and len({kind.diameter for kind in self.kinds}) == 1
         found, most = self.fraction(box), closest_packing(box.dimension)

@@ -1,42 +1,55 @@
-"""What does not go together in a case of event-driven dynamics."""
+"""Combinations of sections that event-driven dynamics refuses, and contacts with walls."""
+
+import math
+
+import numpy as np
 
 from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry import walls
 from mesokit.geometry.surface import Surface
-from mesokit.method.spheres.common import falls
-from mesokit.method.spheres.common.wall import plates
-from mesokit.method.spheres.hard.walls import wall_rows
+from mesokit.method.spheres.common.checks import (
+    check_floor,
+    check_plates,
+    check_spins,
+    periodic_axes,
+)
+from mesokit.method.spheres.common.walls import surface_rows
+from mesokit.seam.engine import Array
 
 WALLS = walls.Walls(("no-slip", "slip", "diffuse"), moving=True, contact=walls.CONTACT)
 
 
-def check(case: Case) -> None:
+def check_hard(case: Case) -> None:
     """Raise CaseError for a case without a meaning."""
     section, box = case.spheres, case.box
+    pair, largest = section.collision, section.largest(box)
     section.check(box)
     for problem in WALLS.problems(case):
         raise CaseError(problem)
     for key, surface, _ in walls.surfaces(case):
-        _contact(case, key, surface)
-    wall_rows(case)
-    plates.check_plates(case)
-    _friction(case)
-    _spins(case)
-    largest = section.largest(box)
-    shut = {axis for wall in case.walls for axis in wall.closed_axes}
-    for axis, length in zip(box.axes, box.size, strict=True):
-        if axis not in shut and length < 2 * largest:
+        _check_contact(case, key, surface)
+    contacts = wall_contacts(case)
+    check_plates(case)
+    if pair.friction and pair.tangential == -1.0:
+        raise CaseError(
+            f"spheres.collision.friction = {show(pair.friction)}: with tangential = -1 spheres are "
+            "smooth; expected tangential above -1 (1: as rough as friction lets them be)"
+        )
+    turned = pair.rough or bool((contacts[:, 1] > -1).any())
+    check_spins(case, turned, "spheres.collision.tangential above -1")
+    for axis, length in periodic_axes(case):
+        if length < 2 * largest:
             raise CaseError(
                 f"box.size = {show(list(box.size))}: expected at least two diameters "
                 f"({2 * largest:g}) along {axis}"
             )
-    falls.check_floor(case)
+    check_floor(case)
     section.start.check(case)
 
 
-def _contact(case: Case, key: str, surface: Surface) -> None:
+def _check_contact(case: Case, key: str, surface: Surface) -> None:
     """A surface reflects spheres, which takes restitution and friction, or is warm."""
     contact, diffuse = surface.contact, surface.rule == "diffuse"
     if contact is None:
@@ -62,22 +75,25 @@ def _contact(case: Case, key: str, surface: Surface) -> None:
         )
 
 
-def _spins(case: Case) -> None:
-    """Spins have no effect where nothing turns spheres."""
-    section = case.spheres
-    turned = section.collision.rough or bool((wall_rows(case).contacts[:, 1] > -1).any())
-    if section.spin_kT and not turned:
-        raise CaseError(
-            f"spheres.spin_kT = {show(section.spin_kT)}: no effect on smooth spheres, which "
-            "nothing turns; leave it out, or expected spheres.collision.tangential above -1"
-        )
+def wall_contacts(case: Case) -> Array:
+    """Restitution (-1: as of pairs), tangential restitution, friction and temperature (0: none) of
+    each row of walls, (walls, 4)."""
+    pair, found = case.spheres.collision, []
 
+    def value_of(surface: Surface, name: str, usual: float | None) -> float | None:
+        own = None if surface.contact is None else getattr(surface.contact, name)
+        return usual if own is None else own
 
-def _friction(case: Case) -> None:
-    """Friction acts on what is not smooth."""
-    pair = case.spheres.collision
-    if pair.friction and pair.tangential == -1.0:
-        raise CaseError(
-            f"spheres.collision.friction = {show(pair.friction)}: with tangential = -1 spheres are "
-            "smooth; expected tangential above -1 (1: as rough as friction lets them be)"
+    for _, surface in surface_rows(case).surfaces:
+        tangential = value_of(surface, "tangential", pair.tangential)
+        friction = value_of(surface, "friction", pair.friction)
+        warm = surface.rule == "diffuse"
+        found.append(
+            (
+                value_of(surface, "restitution", -1.0),
+                -1.0 if surface.rule == "slip" else tangential,
+                math.inf if friction is None else friction,
+                value_of(surface, "temperature", case.spheres.kT) if warm else 0.0,
+            )
         )
+    return np.array(found, float).reshape(-1, 4)

@@ -1,4 +1,4 @@
-"""What theory expects of hard spheres: equilibrium, ways, memory, neighbours and cooling."""
+"""Theory of hard spheres: equilibrium, displacement, memory, neighbours and cooling."""
 
 import math
 from typing import Any
@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.case import Case
-from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.cooling import Cooling, haff_time, uniform
 from mesokit.method.spheres.common.expected.enskog import fluid_note
 from mesokit.method.spheres.common.expected.equilibrium import (
@@ -18,13 +17,12 @@ from mesokit.method.spheres.common.expected.equilibrium import (
     surfaces,
 )
 from mesokit.method.spheres.common.expected.neighbours import NeighboursOfSpheres
-from mesokit.method.spheres.common.velocity_memory import VelocityMemory
-from mesokit.observe import mean_square_displacement
+from mesokit.method.spheres.common.motion import SphereDisplacement, VelocityMemory
 from mesokit.seam.engine import Array, Integers
 
 
-def equilibrium(case: Case) -> Equilibrium | None:
-    """None where collisions take energy, or baths and walls of two temperatures are there."""
+def hard_equilibrium(case: Case) -> Equilibrium | None:
+    """Equilibrium, None where collisions take energy or temperatures of baths and walls differ."""
     section = case.spheres
     if not (section.collision.elastic and still_walls(case) and _keep_energy(case)):
         return None
@@ -47,40 +45,28 @@ def equilibrium(case: Case) -> Equilibrium | None:
 
 
 def _keep_energy(case: Case) -> bool:
-    """Whether walls that are not warm take none."""
-    for surface in surfaces(case):
-        contact = surface.contact
-        if contact is None or surface.rule == "diffuse":
-            continue
-        if contact.restitution not in (None, 1.0):
-            return False
-        if contact.tangential not in (None, -1.0, 1.0) or contact.friction is not None:
-            return False
-    return True
+    """Whether walls without a temperature of their own keep energy."""
+    contacts = [s.contact for s in surfaces(case) if s.contact is not None and s.rule != "diffuse"]
+    return all(
+        contact.restitution in (None, 1.0)
+        and contact.tangential in (None, -1.0, 1.0)
+        and contact.friction is None
+        for contact in contacts
+    )
 
 
 DECAYED = 5.0  # times of the velocity's memory after which motion is diffusive
 
 
-class Displacement(mean_square_displacement.Displacement):
+class HardDisplacement(SphereDisplacement):
     """Ballistic at first, diffusive when the velocity is forgotten: 2 D (t - T + T exp(-t/T)) along
     each axis, T = m D/kT, with the D of Enskog."""
 
-    answers = "mean-square-displacement"
-
     def __init__(self, case: Case, observable: Any) -> None:
-        if observable.of != "particles" or observable.kind is not None:
-            raise CaseError("of: expected 'particles'; there are no molecules")
-        chosen = observable.components or [axis for axis in case.box.axes if not _shut(case, axis)]
-        if not chosen:
-            raise CaseError("mean-square-displacement: every axis is closed by a wall")
-        self.axes = tuple(case.box.index(axis, "components") for axis in chosen)
-        self.case, self.length, self.number = case, 1, case.particles
-        self.timestep = case.spheres.timestep
+        super().__init__(case, observable)
         self.diffusion, self.memory = enskog(case)
 
     def expected(self, steps: Integers) -> Array | None:
-        """The displacement after so many steps, None without a theory."""
         if not math.isfinite(self.diffusion):
             return None
         time = np.asarray(steps * self.timestep, float)
@@ -88,27 +74,16 @@ class Displacement(mean_square_displacement.Displacement):
         return 2 * len(self.axes) * self.diffusion * flown
 
     def coefficient(self) -> tuple[float, str]:
-        """D of Enskog, which is not exact."""
-        if not math.isfinite(self.diffusion):
-            return self.diffusion, ""
-        return self.diffusion, NOTE
+        return self.diffusion, NOTE if math.isfinite(self.diffusion) else ""
 
     def diffusive_from(self) -> float:
-        """When the velocity is forgotten."""
         return DECAYED * self.memory if math.isfinite(self.memory) else 0.0
 
-    def grows(self) -> bool:
-        """In 2D, where neither walls nor heating take momentum."""
-        kept = not (self.case.walls or self.case.spheres.heating)
-        return self.case.box.dimension == 2 and kept and self.number > 1
+    def _keeps_momentum(self) -> bool:
+        return not (self.case.walls or self.case.spheres.heating)
 
     def legend(self) -> str:
-        """Whose law it is."""
         return "Enskog"
-
-
-def _shut(case: Case, axis: str) -> bool:
-    return any(axis in wall.closed_axes for wall in case.walls)
 
 
 def enskog(case: Case) -> tuple[float, float]:
@@ -117,9 +92,8 @@ def enskog(case: Case) -> tuple[float, float]:
     kind, d = section.kinds[0], box.dimension
     alike = len(section.kinds) == 1 and kind.spread == 0 and case.particles > 1
     quiet = not (case.walls or section.gravity or section.heating) and section.kT > 0
-    if not (alike and quiet and section.collision.elastic and section.collision.hard):
-        return math.nan, math.nan
-    if section.collision.rough:
+    pair = section.collision
+    if not (alike and quiet and pair.elastic and pair.hard) or pair.rough:
         return math.nan, math.nan
     kT_over_m = section.kT / kind.mean_mass(d)
     chi = theory.contact_value(section.fraction(box), d)
@@ -139,37 +113,31 @@ class EnskogMemory(VelocityMemory):
         super().__init__(case, observable)
         self.coefficient, self.time = enskog(case)
         self.timestep = float(case.spheres.timestep)
-        # velocities add up to zero, and a component has n - 1 of n degrees of freedom
+        # Velocities add up to zero, so a component has n - 1 of n degrees of freedom.
         self.square = self.coefficient / self.time * (1 - 1 / case.particles)
 
     def expected(self, steps: Integers) -> Array | None:
-        """Of a component; None without a theory."""
         if math.isnan(self.time):
             return None
         return np.asarray(self.square * np.exp(-steps * self.timestep / self.time))
 
     def legend(self) -> str:
-        """Whose law it is."""
         return "Enskog"
 
     def level(self, error: float, runs: int) -> tuple[float, float] | None:
-        """kT/m, which the start gives exactly."""
         return self.square, error
 
     def share(self, every: int) -> str | None:
-        """Not told without a theory."""
         return None if math.isnan(self.time) else NOTE
 
     def diffusion(self, every: int) -> tuple[float, str] | None:
-        """D of Enskog."""
-        coarse = every * self.timestep > COARSE * self.time  # nan: not known, and told
+        coarse = every * self.timestep > COARSE * self.time  # false for nan
         return None if coarse else (self.coefficient, "" if math.isnan(self.time) else NOTE)
 
 
-class Neighbours(NeighboursOfSpheres):
-    """g at contact by the equation of state, which the pressure of hard spheres is made of: Z - 1
-    is 2^(d-1) times the packing fraction and g; nan of unlike spheres and of those that lose
-    energy. `diameter` is where, nan of unlike ones."""
+class HardNeighbours(NeighboursOfSpheres):
+    """g at contact from the equation of state: Z - 1 is 2^(d-1) times the packing fraction and g;
+    nan for unlike spheres and for those that lose energy. `diameter` is nan for unlike spheres."""
 
     def __init__(self, case: Case, observable: Any) -> None:
         super().__init__(case, observable)
@@ -192,23 +160,18 @@ class HardCooling:
 
     def __init__(self, case: Case, observable: Any) -> None:
         self.case, section = case, case.spheres
-        collision, state = section.collision, equilibrium(case)
+        collision, state = section.collision, hard_equilibrium(case)
         self.known = Cooling(collision.rough)
         warm = section.heating is not None or case.walls
         if warm and state is not None and not math.isnan(state.kT):
-            held = state.kT if section.heating is not None or self._warm_walls() else math.nan
+            heated = section.heating is not None
+            heated |= any(surface.rule == "diffuse" for surface in surfaces(case))
+            held = state.kT if heated else math.nan
             self.known = self.known._replace(held=held, fluctuates=True)
         constant = collision.constant_restitution
         smooth = not collision.rough and section.heating is None
         if constant is not None and uniform(case) and smooth:
             self.known = self.known._replace(restitution=constant)
-
-    def _warm_walls(self) -> bool:
-        return any(
-            surface.rule == "diffuse"
-            for wall in self.case.walls
-            for surface in wall.surfaces().values()
-        )
 
     def haff_time(self, kT: float) -> float:
         """The time of Haff's law, from a temperature."""

@@ -8,8 +8,6 @@ from mesokit.method.spheres.hard.collision import SphereCollision
 from mesokit.method.spheres.hard.collision.hard import HardCollision
 from mesokit.method.spheres.hard.heating import Heating
 
-KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
-
 
 @component
 class HardSpheres(Spheres):
@@ -41,12 +39,10 @@ class HardSpheres(Spheres):
 
     @property
     def instant_collision(self) -> SphereCollision:
-        """The collision rule."""
         return self.collision
 
     @property
     def energy_source(self) -> Heating | None:
-        """What puts energy in."""
         return self.heating
 
     @property
@@ -57,8 +53,8 @@ class HardSpheres(Spheres):
         return self.kT if self.collision.rough else 0.0
 
 
-class Sections:
-    """What a case of event-driven dynamics has beside the sections of every case."""
+class HardSections:
+    """Sections of a case of event-driven dynamics beside those of every case."""
 
     spheres: HardSpheres = param(HardSpheres(), doc="the spheres")
     walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")

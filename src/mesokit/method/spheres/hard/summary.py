@@ -5,13 +5,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from mesokit import theory
-from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.amounts import duration_text, number
 from mesokit.case.case import Case
-from mesokit.case.trajectory import stored_bytes
-from mesokit.case.warnings import run_warnings
-from mesokit.method.spheres.common import cost, falls
+from mesokit.method.spheres.common import cost
+from mesokit.method.spheres.common.checks import warnings_of_falls
 from mesokit.method.spheres.common.start.lattice import LatticeStart
-from mesokit.method.spheres.hard.walls import wall_rows
+from mesokit.method.spheres.hard.checks import wall_contacts
 from mesokit.method.spheres.hard.window import collision_rate
 from mesokit.seam.method import Row, Summary
 
@@ -20,7 +19,7 @@ FREEZES = {2: 0.70, 3: 0.494}  # packing fraction above which they order in equi
 DENSE, MELTS = 0.1, 50  # packing fraction from which a lattice lasts; collisions of each until then
 
 
-def summary(case: Case, threads: int | None = None) -> Summary:
+def hard_summary(case: Case, threads: int | None = None) -> Summary:
     """Derived numbers, cost, and warnings."""
     section, box = case.spheres, case.box
     steps, rate = case.run.warmup + case.run.steps, collision_rate(case)
@@ -30,15 +29,12 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     seconds = events * cost.COLLISION[box.dimension]
     if flight is not None:
         seconds = max(seconds, time * cost.hard_seconds(flight))
-    memory = case.particles * section.bytes_each + 200_000_000
-    stored = stored_bytes(case.trajectory, case.groups, box.dimension, case.run.steps)
     hard = section.collision.hard
     enskog = "of a sphere at the start, Enskog" + ", without the potential" * (not hard)
+    in_step = number(0.5 * rate * case.particles * section.timestep)
     rows: list[Row] = [
-        ("spheres", f"{case.particles:,}".replace(",", " "), ""),
-        ("packing fraction", number(phi), ""),
         ("collision rate", number(rate, "1/time"), enskog),
-        ("collisions in a step", number(0.5 * rate * case.particles * section.timestep), "of all"),
+        ("collisions in a step", in_step, "of all"),
     ]
     if section.kT > 0 and len(section.kinds) == 1 and hard:
         z = theory.compressibility(phi, box.dimension)
@@ -46,31 +42,22 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     numbers: dict[str, Any] = {
         "packing_fraction": phi, "collision_rate": rate, "collisions": events, "seconds": seconds,
     }  # fmt: skip
-    rows.append(("run time", duration_text(max(seconds, 0.1)), "estimate: one thread"))
-    rows += _beside(case, flight, time, numbers)
-    rows += [
-        ("memory", size_text(memory), "estimate"),
-    ]
-    if stored:
-        rows.append(("trajectory", size_text(stored), "estimate"))
-    warnings = (*run_warnings(case, memory, stored), *_warnings(case, rate))
-    return Summary(tuple(rows), warnings, seconds, numbers, memory)
+    beside, note = _beside(case, flight, time, numbers), "estimate: one thread"
+    return cost.summary_of(case, rows, beside, numbers, note, _warnings(case, rate))
 
 
 def _beside(
     case: Case, flight: cost.Flight | None, time: float, numbers: dict[str, Any]
 ) -> Iterator[Row]:
-    """What the same spheres would cost as soft ones, and which method is cheaper."""
+    """Rows on the cost of the same spheres as soft ones, and on the cheaper method."""
     section = case.spheres
     if flight is None or not section.collision.hard:
         return
-    contact = cost.contact_time_as_hard(flight)
+    contact, pair = cost.contact_time_as_hard(flight), section.collision
     step = contact / cost.STEPS
-    rubs = section.collision.rough
-    soft = time / step * cost.soft_seconds(flight.number, flight.listed_by_soft, rubs)
+    soft = time / step * cost.soft_seconds(flight.number, flight.listed_by_soft, pair.rough)
     per_flight = 1 / (flight.rate * step)
-    loses, heated = not section.collision.elastic, section.heating is not None
-    rests = cost.comes_to_rest(case, loses, heated)
+    rests = cost.comes_to_rest(case, not pair.elastic, section.heating is not None)
     numbers |= {
         "soft_seconds": soft,
         "soft_steps_per_flight": per_flight,
@@ -82,17 +69,15 @@ def _beside(
         f"a contact lasts {contact:.3g} and takes {cost.STEPS} steps, "
         f"a free flight {float(f'{per_flight:.3g}'):g}",
     )
-    if rests:
-        yield cost.AT_REST
-    else:
-        yield cost.cheaper("event-driven", soft / numbers["seconds"])
+    yield cost.AT_REST if rests else cost.cheaper("event-driven", soft / numbers["seconds"])
 
 
 def _warnings(case: Case, rate: float) -> Iterator[str]:
     section, box = case.spheres, case.box
     phi = section.fraction(box)
-    contacts = wall_rows(case).contacts
-    yield from falls.warnings(case, bool(((contacts[:, 1] > -1) | (contacts[:, 3] > 0)).any()))
+    contacts = wall_contacts(case)
+    rough = ((contacts[:, 1] > -1) | (contacts[:, 3] > 0)).any()
+    yield from warnings_of_falls(case, bool(rough))
     if phi > FREEZES[box.dimension]:
         ordered = isinstance(section.start, LatticeStart)
         slow = "a lattice stays ordered" if ordered else "a random start stays disordered"
@@ -104,16 +89,16 @@ def _warnings(case: Case, rate: float) -> Iterator[str]:
                 f"run.warmup = {case.run.warmup}: spheres start on a lattice, which lasts some "
                 f"{MELTS} collisions of each, {need} steps"
             )
-    loses = not section.collision.elastic
-    if loses and section.collision.contact_time == 0 and (phi > 0.1 or section.gravity):
+    loses, contact_time = not section.collision.elastic, section.collision.contact_time
+    if loses and contact_time == 0 and (phi > 0.1 or section.gravity):
         yield (
             "spheres.collision.contact_time: 0; where many inelastic collisions follow on one "
             "another the run ends in inelastic collapse"
         )
-    share = theory.elastic_share(rate, section.collision.contact_time)
+    share = theory.elastic_share(rate, contact_time)
     if loses and share > MADE_ELASTIC:
         yield (
-            f"spheres.collision.contact_time: {section.collision.contact_time:.3g} makes "
+            f"spheres.collision.contact_time: {contact_time:.3g} makes "
             f"{100 * share:.3g} % of the collisions elastic; expected less than a hundredth of the "
             f"mean free time, {1 / rate:.3g}"
         )

@@ -1,4 +1,4 @@
-"""How long a window is: the time after which all spheres are brought to one time."""
+"""The length of a window, the time after which all spheres are brought to one time."""
 
 import math
 
@@ -20,9 +20,8 @@ def thermal_rate(case: Case) -> float:
         return 0.0
     mass = min(kind.mean_mass(box.dimension) for kind in section.kinds)
     phi, number = min(section.fraction(box), 0.7), section.count(box)
-    rate = theory.enskog_rate(
-        number / box.volume, _diameter(case), section.kT / mass, phi, box.dimension
-    )
+    density, kT_over_m = number / box.volume, section.kT / mass
+    rate = theory.enskog_rate(density, _diameter(case), kT_over_m, phi, box.dimension)
     return max(rate, math.sqrt(section.kT / mass) / max(box.size))
 
 
@@ -40,9 +39,8 @@ def _diameter(case: Case) -> float:
 
 
 def window(case: Case) -> float:
-    """A power of two, about 500 mean times between collisions, or a quarter of one where velocities
-    are changed at the end of each. It does not depend on the timestep, so that the length of a step
-    changes no bit."""
+    """The length of a window: a power of two, about 500 mean times between collisions, or a quarter
+    of one with heating. It does not depend on the timestep, which so changes no bit."""
     rate, heating = collision_rate(case), case.spheres.heating
     if heating is not None and heating.interval is not None:
         return float(heating.interval)
@@ -53,8 +51,7 @@ def window(case: Case) -> float:
 
 
 def instant(case: Case) -> float:
-    """A time between two collisions that is none: where it comes many times in a row, time stands
-    still."""
+    """A time between two collisions that counts as none, for the detection of collapse."""
     rate = collision_rate(case)
     return INSTANT / rate if rate > 0 else 0.0
 

@@ -1,14 +1,19 @@
-"""What does not go together in a case of soft spheres."""
+"""Combinations of sections that soft spheres refuse."""
 
 from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry import walls
+from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
-from mesokit.method.spheres.common import falls
-from mesokit.method.spheres.common.wall import plates
-from mesokit.method.spheres.common.wall.surfaces import other_walls, surface_rows
+from mesokit.method.spheres.common.checks import (
+    check_floor,
+    check_plates,
+    check_spins,
+    periodic_axes,
+)
+from mesokit.method.spheres.common.walls import other_walls, surface_rows
 from mesokit.method.spheres.soft import scales
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 
@@ -18,40 +23,41 @@ WALLS = walls.Walls(
 )
 
 
-def check(case: Case) -> None:
+def check_soft(case: Case) -> None:
     """Raise CaseError for a case without a meaning."""
     section, box = case.spheres, case.box
     for problem in WALLS.problems(case):
         raise CaseError(problem)
     section.check(box)
     section.start.check(case)
-    _walls(case)
-    plates.check_plates(case)
-    _potential(case)
-    reach = section.reach(box)
-    shut = {axis for wall in case.walls for axis in wall.closed_axes}
-    for axis, length in zip(box.axes, box.size, strict=True):
-        if axis not in shut and length < 2 * reach:
+    _check_walls(case)
+    check_plates(case)
+    if not isinstance(section.pair, ContactLaw):
+        _check_potential(case)
+    reach, shut = section.reach(box), closed_axes(case.walls)
+    for axis, length in periodic_axes(case):
+        if length < 2 * reach:
             raise CaseError(
                 f"box.size = {show(list(box.size))}: expected at least twice the reach of the pair "
                 f"law ({2 * reach:g}) along {axis}"
             )
-        if axis not in shut and length < 2 * (reach + section.skin_of(box, shut)):
+        if length < 2 * (reach + section.skin_of(box, shut)):
             raise CaseError(
                 f"spheres.skin = {show(section.skin)}: expected less than "
                 f"{0.5 * length - reach:.3g}, half of the box along {axis} less the reach"
             )
-    falls.check_floor(case)
-    _timestep(case)
-    if section.spin_kT and not (section.turns or rubs(case)):
-        raise CaseError(
-            f"spheres.spin_kT = {show(section.spin_kT)}: no effect on smooth spheres, which "
-            "nothing turns; leave it out, or expected spheres.pair.friction above 0"
-        )
+    check_floor(case)
+    if section.timestep is not None and isinstance(section.pair, ContactLaw):
+        longest = scales.shortest_contact(case) / scales.REFUSED
+        if section.timestep > longest:
+            raise CaseError(
+                f"spheres.timestep = {show(section.timestep)}: expected at most a tenth of the "
+                f"contact time, {longest:.3g} (better a fiftieth)"
+            )
+    check_spins(case, section.turns or rubs(case), "spheres.pair.friction above 0")
 
 
-def _walls(case: Case) -> None:
-    """Walls do what contacts do, and no more."""
+def _check_walls(case: Case) -> None:
     touching, others = isinstance(case.spheres.pair, ContactLaw), other_walls(case)
     surface_rows(case, others)
     if others and not touching:
@@ -61,11 +67,12 @@ def _walls(case: Case) -> None:
         )
     if others:
         Solids(case.walls, case.box, only=others)
+    keys = {f"wall[#{i + 1}]" for i in others}
     for key, surface, _ in walls.surfaces(case):
-        _surface(key, surface, case, key.partition(".")[0] in {f"wall[#{i + 1}]" for i in others})
+        _check_surface(key, surface, case, key.partition(".")[0] in keys)
 
 
-def _surface(key: str, surface: Surface, case: Case, other: bool) -> None:
+def _check_surface(key: str, surface: Surface, case: Case, other: bool) -> None:
     contact, touching = surface.contact, isinstance(case.spheres.pair, ContactLaw)
     if contact is None:
         return
@@ -83,11 +90,9 @@ def _surface(key: str, surface: Surface, case: Case, other: bool) -> None:
         )
 
 
-def _potential(case: Case) -> None:
-    """Potentials act between equal spheres."""
+def _check_potential(case: Case) -> None:
+    """Raise CaseError unless spheres are equal, of the diameter of the potential."""
     section = case.spheres
-    if isinstance(section.pair, ContactLaw):
-        return
     if section.speed is not None:
         raise CaseError(
             f"spheres.speed = {show(section.speed)}: only for laws of contact; with a potential "
@@ -108,16 +113,3 @@ def rubs(case: Case) -> bool:
     """Whether a wall has friction of its own."""
     contacts = [surface.contact for _, surface, _ in walls.surfaces(case)]
     return any(contact is not None and bool(contact.friction) for contact in contacts)
-
-
-def _timestep(case: Case) -> None:
-    """A contact must be followed."""
-    section = case.spheres
-    if section.timestep is None or not isinstance(section.pair, ContactLaw):
-        return
-    time = scales.shortest_contact(case)
-    if section.timestep > time / scales.REFUSED:
-        raise CaseError(
-            f"spheres.timestep = {show(section.timestep)}: expected at most a tenth of the contact "
-            f"time, {time / scales.REFUSED:.3g} (better a fiftieth)"
-        )

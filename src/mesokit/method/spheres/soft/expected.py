@@ -1,20 +1,17 @@
-"""What theory expects of soft spheres: equilibrium and cooling; it has none of displacements."""
+"""Theory of soft spheres: equilibrium and cooling."""
 
 import math
 from typing import Any
 
 from mesokit.case.case import Case
-from mesokit.errors import CaseError
-from mesokit.geometry.walls import closed_axes
 from mesokit.method.spheres.common.expected.cooling import Cooling, haff_time, uniform
 from mesokit.method.spheres.common.expected.equilibrium import Equilibrium, still_walls, surfaces
+from mesokit.method.spheres.common.motion import SphereDisplacement
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
-from mesokit.observe import mean_square_displacement
-from mesokit.seam.method import method_of
 
 
-def equilibrium(case: Case) -> Equilibrium | None:
-    """None where contacts take energy. Without a bath the temperature is known afterwards alone:
+def soft_equilibrium(case: Case) -> Equilibrium | None:
+    """Equilibrium, None where contacts take energy; its temperature is nan without a bath, since
     forces take a part of the energy of the start."""
     section = case.spheres
     touching = isinstance(section.pair, ContactLaw)
@@ -32,28 +29,12 @@ def equilibrium(case: Case) -> Equilibrium | None:
     return Equilibrium(held, touching)
 
 
-class Displacement(mean_square_displacement.Displacement):
-    """Memory of velocities without a theory, as there is none of such a fluid."""
+class SoftDisplacement(SphereDisplacement):
+    """Displacement in a fluid of soft spheres, for which there is no theory."""
 
-    answers = "mean-square-displacement"
-
-    def __init__(self, case: Case, observable: Any) -> None:
-        if observable.of != "particles" or observable.kind is not None:
-            raise CaseError("of: expected 'particles'; there are no molecules")
-        shut = closed_axes(case)
-        free = [axis for k, axis in enumerate(case.box.axes) if k not in shut]
-        chosen = observable.components or free
-        if not chosen:
-            raise CaseError("mean-square-displacement: every axis is closed by a wall")
-        self.axes = tuple(case.box.index(axis, "components") for axis in chosen)
-        self.case, self.length, self.number = case, 1, case.particles
-        self.timestep = method_of(case).timestep(case)
-
-    def grows(self) -> bool:
-        """In 2D, where neither walls nor a bath take momentum."""
-        case, bath = self.case, self.case.spheres.thermostat
-        kept = not case.walls and (bath is None or bath.decay(self.timestep) == 1.0)
-        return case.box.dimension == 2 and kept and self.number > 1
+    def _keeps_momentum(self) -> bool:
+        bath = self.case.spheres.thermostat
+        return not self.case.walls and (bath is None or bath.decay(self.timestep) == 1.0)
 
 
 class SoftCooling:
@@ -63,7 +44,7 @@ class SoftCooling:
 
     def __init__(self, case: Case, observable: Any) -> None:
         self.case, section = case, case.spheres
-        bath, law, state = section.thermostat, section.pair, equilibrium(case)
+        bath, law, state = section.thermostat, section.pair, soft_equilibrium(case)
         self.known = Cooling(section.turns)
         if bath is not None and state is not None:
             fluctuates = not bath.scaled_every

@@ -1,6 +1,7 @@
-"""From the section of a case to the numbers that the loops work with."""
+"""Parameters of the loops of soft spheres from the section of a case."""
 
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,46 +11,54 @@ from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common.made import Made
-from mesokit.method.spheres.common.wall.surfaces import other_walls, room_of, surface_rows
+from mesokit.method.spheres.common.walls import other_walls, room_of, surface_rows
 from mesokit.method.spheres.soft.checks import rubs
 from mesokit.method.spheres.soft.engine.central import Central
 from mesokit.method.spheres.soft.engine.contact.force import OWN, Contact
 from mesokit.method.spheres.soft.engine.groups import Motion
-from mesokit.method.spheres.soft.engine.system import Given, Others
+from mesokit.method.spheres.soft.engine.system import Others, SoftSetup
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw, damping_ratio
-from mesokit.method.spheres.soft.scales import (
-    fastest_followed,
-    speed_of_collision,
-    timestep_of,
-)
+from mesokit.method.spheres.soft.scales import fastest_followed, speed_of_collision, timestep_of
 from mesokit.potential.protocol import central
 
-Array = NDArray[np.float64]
-PARTS = 2.0**50  # quanta in the force of an overlap of a diameter: beyond it there is room for 2^11
-FINEST = 2.0**34  # quanta in the unit of force of a potential
-ROOM = 2.0**50  # quanta that one term of a vector loop may be
+PARTS = 2.0**50  # quanta in the force at an overlap of a diameter; sums may be 2^11 times larger
+FINEST = 2.0**34  # quanta in the usual force of a potential
+ROOM = 2.0**50  # largest number of quanta in one term of a vector loop
 
 
-def given_of(case: Case, made: Made) -> Given:
-    """All that does not change in a run."""
+def given_of(case: Case, made: Made) -> SoftSetup:
+    """All parameters of a run."""
     section, box, law = case.spheres, case.box, case.spheres.pair
-    touching = isinstance(law, ContactLaw)
-    rows, own = _walls(case)
-    return Given(
+    touching, walls = isinstance(law, ContactLaw), surface_rows(case, other_walls(case))
+    bath, step, d = section.thermostat, timestep_of(case), box.dimension
+    if touching:
+        reach, width, nearest = made.diameters / 2, law.width(rubs(case)), 0.0
+        forces: Any = contact_of(law, law.largest_force(case), _ahead(case))
+    else:
+        reach, width = np.full(len(made.masses), 0.5 * law.reach), 0
+        forces, nearest = central_of(law), least_distance(law)
+    turns = (float(d == 3), float(d == 3), 1.0) if section.turns else (0.0, 0.0, 0.0)
+    motion = Motion(
+        float(step),
+        three_axes(section.gravity),
+        1.0 if bath is None else bath.decay(step),
+        0.0 if bath is None else bath.held_kT,
+        (1.0, 1.0, float(d == 3)),
+        turns,
+    )
+    return SoftSetup(
         tuple(float(length) for length in box.size),
         tuple(room_of(case).closed),
-        made.diameters / 2 if touching else np.full(len(made.masses), 0.5 * law.reach),
+        reach,
         made.masses,
         made.inertia,
-        contact_of(law, law.largest_force(case), _ahead(case))
-        if touching
-        else central_of(case, law),
+        forces,
         touching,
-        law.width(rubs(case)) if touching else 0,
-        0.0 if touching else least_distance(law),
-        _motion(case),
-        rows,
-        own,
+        width,
+        nearest,
+        motion,
+        walls.rows,
+        np.array([_own(case, s) for _, s in walls.surfaces]).reshape(-1, OWN),
         case.run.seed,
         section.skin_of(box, closed_axes(case.walls)),
         others_of(case, made),
@@ -58,8 +67,8 @@ def given_of(case: Case, made: Made) -> Given:
 
 
 def contact_of(law: ContactLaw, largest: float, ahead: float) -> Contact:
-    """A law of contact, from the force of an overlap of a diameter and how far spheres come in half
-    a step."""
+    """A law of contact; largest: force at an overlap of a diameter; ahead: approach of spheres in
+    half a step."""
     scale = 2.0 ** np.floor(np.log2(PARTS / largest))
     return Contact(
         law.normal(),
@@ -75,54 +84,37 @@ def contact_of(law: ContactLaw, largest: float, ahead: float) -> Contact:
 
 
 def _ahead(case: Case) -> float:
-    """How far spheres may come nearer in half a step."""
+    """The largest approach of two spheres in half a step."""
     path = 0.5 * timestep_of(case) * speed_of_collision(case)
     return min(path, 0.25 * case.spheres.skin_of(case.box, closed_axes(case.walls)))
 
 
-def central_of(case: Case, law: Any) -> Central:
+def central_of(law: Any) -> Central:
     """A potential; forces are counted in parts of that at the distance of a diameter."""
     scale = 2.0 ** np.floor(np.log2(FINEST / usual_force(law)))
     return Central(law.kernel(), float(1 / scale), float(scale))
 
 
 def usual_force(law: Any) -> float:
-    """A force of the potential that is met everywhere: at 0.95 of the diameter."""
-    square = (0.95 * law.diameter) ** 2
-    _, force_over_r = central(law.kernel(), square)
+    """A force of the potential that is usual in a fluid: at 0.95 of the diameter."""
+    _, force_over_r = central(law.kernel(), (0.95 * law.diameter) ** 2)
     return abs(force_over_r) * law.diameter or 1.0
 
 
 def least_distance(law: Any) -> float:
-    """The distance below which a force has no room in one term of a vector loop."""
+    """The distance below which a force is too large for one term of a vector loop."""
     kernel, most = law.kernel(), usual_force(law) * ROOM / FINEST
-    distances = np.linspace(1.0, 0.0, 1001)[:-1] * law.diameter
-    for distance in distances:
+    for distance in np.linspace(1.0, 0.0, 1001)[:-1] * law.diameter:
         _, force_over_r = central(kernel, float(distance) ** 2)
         if not abs(force_over_r) * distance < most:
             return float(distance)
     return 0.0
 
 
-def _motion(case: Case) -> Motion:
-    section, box = case.spheres, case.box
-    d, step = box.dimension, timestep_of(case)
-    gravity = [*section.gravity, 0.0, 0.0, 0.0][:3] if section.gravity else [0.0, 0.0, 0.0]
-    bath = section.thermostat
-    return Motion(
-        float(step),
-        (float(gravity[0]), float(gravity[1]), float(gravity[2])),
-        1.0 if bath is None else bath.decay(step),
-        0.0 if bath is None else bath.held_kT,
-        (1.0, 1.0, 1.0 if d == 3 else 0.0),
-        (0.0, 0.0, 0.0) if not section.turns else (float(d == 3), float(d == 3), 1.0),
-    )
-
-
-def _walls(case: Case) -> tuple[Array, Array]:
-    """Rows of walls, and damping ratio and friction of each: -1, and as of pairs, unless said."""
-    found = surface_rows(case, other_walls(case))
-    return found.rows, np.array([_own(case, s) for _, s in found.surfaces]).reshape(-1, OWN)
+def three_axes(gravity: Sequence[float]) -> tuple[float, float, float]:
+    """An acceleration along three axes; () is none."""
+    x, y, z = [*map(float, gravity), 0.0, 0.0, 0.0][:3]
+    return x, y, z
 
 
 def others_of(case: Case, made: Made) -> Others | None:
@@ -135,29 +127,22 @@ def others_of(case: Case, made: Made) -> Others | None:
     return Others(solids.reaching(away), solids.pattern, own, solids)
 
 
-class SurfacesTaken(NamedTuple):
-    """How many surfaces there are, wall by wall, and which of them each row of walls, and then each
-    body of the other walls, is (rows + bodies,)."""
-
-    number: int
-    place: NDArray[np.int64]
-
-
-def surfaces_of(case: Case) -> SurfacesTaken:
-    """The surfaces of a case."""
+def surfaces_of(case: Case) -> tuple[int, NDArray[np.int64]]:
+    """The number of surfaces, wall by wall, and the number of the surface of each row of walls, and
+    then of each body of the other walls (rows + bodies,)."""
     which = other_walls(case)
     rows = surface_rows(case, which)
-    wall_of_row = np.array([i for i, _ in rows.surfaces], np.int64)
     walls = np.zeros(len(rows.names), np.int64)
-    walls[rows.surface] = wall_of_row
+    walls[rows.surface] = [i for i, _ in rows.surfaces]
     others = Solids(case.walls, case.box, only=which).walls if which else []
     bodies = np.concatenate([walls, np.array(others, np.int64)])
     rank = np.empty(len(bodies), np.int64)
     rank[np.argsort(bodies, kind="stable")] = np.arange(len(bodies))
-    return SurfacesTaken(len(bodies), np.concatenate([rank[rows.surface], rank[len(walls) :]]))
+    return len(bodies), np.concatenate([rank[rows.surface], rank[len(walls) :]])
 
 
 def _own(case: Case, surface: Surface) -> tuple[float, float]:
+    """Damping ratio (-1: as of pairs) and friction of a surface."""
     contact, law = surface.contact, case.spheres.pair
     restitution = None if contact is None else contact.restitution
     friction = None if contact is None else contact.friction

@@ -1,10 +1,9 @@
-"""Times and speeds of a case of soft spheres: how long a contact takes, what a step may be."""
+"""Times and speeds of a case of soft spheres: collisions, contacts and steps."""
 
 import math
 from collections.abc import Callable
 
 from mesokit.case.case import Case
-from mesokit.geometry.surface import Surface
 from mesokit.geometry.walls import surfaces
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 
@@ -22,8 +21,8 @@ def lightest(case: Case) -> float:
 
 
 def speed_of_collision(case: Case) -> float:
-    """How fast spheres may meet: as the case says; else by thermal motion, or after a fall through
-    the box, and by what walls that move add."""
+    """The largest relative speed of collisions: `spheres.speed`; or of thermal motion or a fall
+    through the box, plus the speed of walls."""
     section = case.spheres
     if section.speed is not None:
         return float(section.speed)
@@ -31,7 +30,7 @@ def speed_of_collision(case: Case) -> float:
 
 
 def speed_of_heat(case: Case, kT: float) -> float:
-    """How fast spheres meet by thermal motion, of this energy or of a bath."""
+    """The relative speed of thermal motion, of this energy or of a bath."""
     bath = case.spheres.thermostat
     return FASTEST * math.sqrt(max(kT, 0.0 if bath is None else bath.held_kT) / lightest(case))
 
@@ -44,16 +43,14 @@ def speed_of_fall(case: Case) -> float:
 
 def speed_of_walls(case: Case) -> float:
     """The largest speed that a wall gives to a sphere at rest."""
-    farthest = 0.5 * math.hypot(*case.box.size)  # from the axis of a wall that turns
-    return max((_speed_of(surface, farthest) for _, surface, _ in surfaces(case)), default=0.0)
-
-
-def _speed_of(surface: Surface, farthest: float) -> float:
-    turning, contact = surface.rotation or 0.0, surface.contact
-    rate = math.hypot(*(turning if isinstance(turning, tuple) else (turning,)))
-    # a sphere at rest leaves a plate that comes at some speed with twice that
-    struck = 0.0 if contact is None else 2 * contact.amplitude * contact.frequency
-    return math.hypot(*(surface.velocity or (0.0,))) + rate * farthest + struck
+    farthest, speeds = 0.5 * math.hypot(*case.box.size), [0.0]  # from the axis of a wall that turns
+    for _, surface, _ in surfaces(case):
+        turning, contact = surface.rotation or 0.0, surface.contact
+        rate = math.hypot(*(turning if isinstance(turning, tuple) else (turning,)))
+        # A sphere at rest gets twice the speed of a plate that hits it.
+        struck = 0.0 if contact is None else 2 * contact.amplitude * contact.frequency
+        speeds.append(math.hypot(*(surface.velocity or (0.0,))) + rate * farthest + struck)
+    return max(speeds)
 
 
 def shortest_contact(case: Case) -> float:
@@ -70,7 +67,7 @@ def timestep_of(case: Case) -> float:
 
 
 def usual_timestep(case: Case) -> float:
-    """Time of a step unless the case says one."""
+    """Time of a step without `spheres.timestep`."""
     law = case.spheres.pair
     if isinstance(law, ContactLaw):
         time = shortest_contact(case)
@@ -79,10 +76,9 @@ def usual_timestep(case: Case) -> float:
 
 
 def expected_kT(case: Case) -> float:
-    """The energy from which the step follows with a potential: that of the case, of its bath, or
-    1."""
-    section = case.spheres
-    return max(section.kT, section.thermostat.held_kT if section.thermostat else 0.0, 1.0)
+    """The largest of kT, that of the bath and 1: for the step with a potential."""
+    bath = case.spheres.thermostat
+    return max(case.spheres.kT, bath.held_kT if bath else 0.0, 1.0)
 
 
 def step_of_flight(case: Case, kT: float) -> float:
@@ -101,15 +97,15 @@ def fastest_followed(case: Case) -> float:
 
 
 def speed_of_overlap(case: Case, overlap: float) -> float:
-    """The speed at which two spheres meet that come to overlap so far: that of two which such an
-    overlap drives apart, at most."""
+    """The relative speed of a collision with this largest overlap: a bound of the speed at which
+    two spheres with this overlap part."""
     law, mass = case.spheres.pair, 0.5 * lightest(case)
     assert isinstance(law, ContactLaw)
     return _least_speed(lambda speed: law.overlap_of(mass, speed) >= overlap)
 
 
 def _least_speed(holds: Callable[[float], bool]) -> float:
-    """The least speed of which something holds that holds of all faster ones; infinite of none."""
+    """The least speed for which a monotonic condition holds, by bisection; infinite if for none."""
     low, high = -EXTREME, EXTREME
     if not holds(10.0**high):
         return math.inf

@@ -15,7 +15,6 @@ from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 from mesokit.method.spheres.soft.pair.spring_dashpot import SpringDashpot
 from mesokit.method.spheres.soft.thermostat import SoftThermostat
 
-KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 CONTACT_SKIN, POTENTIAL_SKIN, WIDEST_SKIN = 0.1, 0.16, 1.0  # of the largest reach of two
 FITS = 0.98  # of the largest skin with which a box has no sphere twice on a list
 ALONE = 0.1  # others within reach and skin: where there are so few, a wide skin costs nothing
@@ -75,12 +74,10 @@ class SoftSpheres(Spheres):
 
     @property
     def thermostatted(self) -> bool:
-        """Whether there is a thermostat."""
         return self.thermostat is not None
 
     @property
     def usual_diameter(self) -> float:
-        """That of the potential, of contacts 1."""
         touching = isinstance(self.pair, ContactLaw)
         return 1.0 if touching else float(self.pair.diameter)  # type: ignore[attr-defined]
 
@@ -98,34 +95,31 @@ class SoftSpheres(Spheres):
         return self.kT if self.turns else 0.0
 
     def reach(self, box: Box) -> float:
-        """The largest distance at which two spheres feel one another."""
+        """The largest distance at which two spheres interact."""
         if isinstance(self.pair, ContactLaw):
             largest = max(kind.diameter * (1 + kind.spread) for kind in self.kinds)
             return float(largest * self.scale(box))
         return float(self.pair.reach)  # type: ignore[attr-defined]
 
     def skin_of(self, box: Box, shut: Collection[str]) -> float:
-        """How far lists go beyond that, in a box of which walls shut some axes."""
+        """Length of lists beyond the reach, in a box whose axes `shut` are closed."""
         if self.skin is not None:
             return self.skin
         reach = self.reach(box)
         pairs = zip(box.axes, box.size, strict=True)
         free = min((length for axis, length in pairs if axis not in shut), default=math.inf)
-        return min(self._usual_skin(box, reach), FITS * (0.5 * free - reach))
-
-    def _usual_skin(self, box: Box, reach: float) -> float:
-        """The same where the box has room for it."""
-        if not isinstance(self.pair, ContactLaw):
-            return POTENTIAL_SKIN * reach
-        d = box.dimension
-        within = self.count(box) / box.volume * ball_volume(d, 2 * reach)
-        wanted = ((ALONE / within) ** (1 / d) - 1) * reach
-        widest = min(WIDEST_SKIN * reach, 0.49 * min(box.size) - reach)  # none twice on a list
-        return float(max(min(wanted, widest), CONTACT_SKIN * reach))
+        usual = POTENTIAL_SKIN * reach
+        if isinstance(self.pair, ContactLaw):
+            d = box.dimension
+            within = self.count(box) / box.volume * ball_volume(d, 2 * reach)
+            wanted = ((ALONE / within) ** (1 / d) - 1) * reach
+            widest = min(WIDEST_SKIN * reach, 0.49 * min(box.size) - reach)  # none twice on a list
+            usual = float(max(min(wanted, widest), CONTACT_SKIN * reach))
+        return min(usual, FITS * (0.5 * free - reach))
 
 
-class Sections:
-    """What a case of soft spheres has beside the sections of every case."""
+class SoftSections:
+    """Sections of a case of soft spheres beside those of every case."""
 
     spheres: SoftSpheres = param(SoftSpheres(), doc="the spheres")
     walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")

@@ -1,27 +1,24 @@
-"""Spheres that fall, collide and come to rest."""
+"""Poured starts: spheres fall, collide and come to rest."""
 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.made import Made
-from mesokit.method.spheres.common.wall.rows import AMPLITUDE, MOVES
-from mesokit.method.spheres.common.wall.surfaces import other_walls, room_of, surface_rows
-from mesokit.method.spheres.soft.engine.contact.force import OWN
+from mesokit.method.spheres.common.walls import AMPLITUDE, MOVES, other_walls, room_of, surface_rows
 from mesokit.method.spheres.soft.engine.groups import INVERSE, Motion
-from mesokit.method.spheres.soft.engine.system import Given, System
-from mesokit.method.spheres.soft.laws import contact_of, others_of
+from mesokit.method.spheres.soft.engine.system import SoftSetup, SoftSystem
+from mesokit.method.spheres.soft.laws import contact_of, others_of, three_axes
 from mesokit.method.spheres.soft.pair.spring_dashpot import SpringDashpot
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
 RESTITUTION = 0.3  # low, so that they soon lie
 SOFT = 1e-3  # overlap of the lowest, in diameters, under a column as high as the box
 IN_CONTACT = 20  # steps: single collisions do not matter
 SKIN = 0.15  # of the largest diameter
-LOOK = 2000  # steps between two looks whether they are at rest
+LOOK = 2000  # steps between two checks of rest
 QUIET = 1e-5  # kinetic energy of the fastest over its weight times a diameter: at rest
 MOST_FALLS = 400  # times that a fall through the box takes
 
@@ -29,10 +26,10 @@ MOST_FALLS = 400  # times that a fall through the box takes
 def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
     """Places (n, d) of spheres that have fallen from places (n, d) and lie still.
 
-    They touch as springs and dashpots of the stiffness of the case do, or stiff ones. Walls are
-    rough, and at rest meanwhile. Raises CaseError where they do not come to rest.
+    Contacts are springs and dashpots of the stiffness of the case, or stiff ones. Walls are rough
+    and at rest. Raises CaseError where spheres do not come to rest.
     """
-    size, gravity, room = case.box.size, case.spheres.gravity, room_of(case)
+    size, gravity = case.box.size, case.spheres.gravity
     walls, (n, d) = surface_rows(case, other_walls(case)).rows, places.shape
     others = others_of(case, made)
     if others is not None:
@@ -49,13 +46,11 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
     step = law.contact_time_of(0.5 * float(made.masses.min()), 1.0) / IN_CONTACT
     still = walls.copy()
     still[:, AMPLITUDE] = still[:, MOVES : MOVES + 3] = 0.0
-    own = np.zeros((len(walls), OWN))
-    own[:] = -1.0, friction
-    pull = [*gravity, 0.0, 0.0][:3]
+    own = np.tile([-1.0, friction], (len(walls), 1))
     turns = (float(d == 3), float(d == 3), 1.0)
-    given = Given(
+    setup = SoftSetup(
         tuple(float(length) for length in size),
-        tuple(room.closed),
+        tuple(room_of(case).closed),
         made.diameters / 2,
         made.masses,
         made.inertia,
@@ -63,19 +58,19 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
         True,
         law.width(rubs=friction > 0),
         0.0,
-        Motion(step, (pull[0], pull[1], pull[2]), 1.0, 0.0, (1.0, 1.0, float(d == 3)), turns),
+        Motion(step, three_axes(gravity), 1.0, 0.0, (1.0, 1.0, float(d == 3)), turns),
         still,
         own,
         0,
         SKIN * largest,
         others,
     )
-    system = System(given, threads=1)
+    system = SoftSystem(setup, threads=1)
     system.fill(places, np.zeros((n, d)), np.zeros(n if d == 2 else (n, 3)))
     system.find_forces(0.0)
     done, fall = 0, math.sqrt(2 * height / g)
-    # Steps of the dissipative dynamics until the largest kinetic energy is below a small part of m
-    # g d. Not before the time of a free fall through the box: at the top all are slow.
+    # Steps of the dissipative dynamics until the largest kinetic energy is below a small part of
+    # m g d, but not before the time of a free fall through the box: at the top all are slow.
     while done * step < MOST_FALLS * fall:
         system.run(done, LOOK)
         done += LOOK

@@ -4,11 +4,10 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.amounts import duration_text, number
 from mesokit.case.case import Case
-from mesokit.case.trajectory import stored_bytes
-from mesokit.case.warnings import run_warnings
-from mesokit.method.spheres.common import cost, falls
+from mesokit.method.spheres.common import cost
+from mesokit.method.spheres.common.checks import warnings_of_falls
 from mesokit.method.spheres.common.kinds import ball_volume
 from mesokit.method.spheres.soft import scales
 from mesokit.method.spheres.soft.checks import rubs
@@ -17,30 +16,24 @@ from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import Row, Summary
 
 RATE_OF_POTENTIALS = 2.5e6  # sphere-steps per second and core (docs/benchmark)
-USUAL_NEIGHBOURS = 66.0  # within the reach, where this was measured
-FEWEST = 500  # spheres for each thread that gain by it
+USUAL_NEIGHBOURS = 66.0  # within the reach in this measurement
+FEWEST = 500  # spheres of a thread, below which it gains nothing
 DEEP = 0.05  # overlap, in diameters, beyond which spheres are not hard
 LONG = 4.0  # steps of the usual length beyond which a fluid of a potential loses its energy
 
 
-def summary(case: Case, threads: int | None = None) -> Summary:
+def soft_summary(case: Case, threads: int | None = None) -> Summary:
     """Derived numbers, cost, and warnings."""
     section, box = case.spheres, case.box
     cores = usable_cores() if threads is None else threads
     steps, step = case.run.warmup + case.run.steps, scales.timestep_of(case)
     phi = section.fraction(box)
-    memory = case.particles * section.bytes_each + 200_000_000
-    stored = stored_bytes(case.trajectory, case.groups, box.dimension, case.run.steps)
-    rows: list[Row] = [
-        ("spheres", f"{case.particles:,}".replace(",", " "), ""),
-        ("packing fraction", number(phi), ""),
-        ("timestep", number(step, "time"), "" if section.timestep else "unless said"),
-    ]
+    rows = [("timestep", number(step, "time"), "" if section.timestep else "unless said")]
     numbers: dict[str, Any] = {"packing_fraction": phi, "timestep": step}
     reach, density = section.reach(box), case.particles / box.volume
     if isinstance(section.pair, ContactLaw):
         rows += _contacts(case, numbers)
-        # grains at rest lie closer than where they fall from, and have more others on their lists
+        # Grains at rest are closer than those that fall, so their lists are longer.
         rests = cost.comes_to_rest(case, _loses(case), section.thermostat is not None)
         closer = max(phi, cost.AT_REST_FILLED[box.dimension]) / phi if rests else 1.0
         listed = closer * density * ball_volume(box.dimension, 2 * cost.LIST_REACH * reach)
@@ -50,23 +43,15 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         rate = RATE_OF_POTENTIALS * USUAL_NEIGHBOURS / max(within, 10.0)
         of_core = steps * case.particles / rate
     used = min(cores, max(case.particles // FEWEST, 1))
-    seconds = of_core / used
-    numbers["seconds"] = seconds
+    numbers["seconds"] = of_core / used
     few = f", as fast as {used}: few spheres" if used < cores else ""
-    told = f"estimate: {cores} thread{'s' * (cores > 1)}{few}"
-    rows.append(("run time", duration_text(max(seconds, 0.1)), told))
-    rows += _beside(case, steps, of_core, numbers)
-    rows += [
-        ("memory", size_text(memory), "estimate"),
-    ]
-    if stored:
-        rows.append(("trajectory", size_text(stored), "estimate"))
-    warnings = (*run_warnings(case, memory, stored), *_warnings(case, numbers))
-    return Summary(tuple(rows), warnings, seconds, numbers, memory)
+    note = f"estimate: {cores} thread{'s' * (cores > 1)}{few}"
+    beside = _beside(case, steps, of_core, numbers)
+    return cost.summary_of(case, rows, beside, numbers, note, _warnings(case, numbers))
 
 
 def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
-    """How long contacts take, and how far spheres overlap meanwhile, where anything moves."""
+    """Rows on the duration and overlap of contacts, where anything moves."""
     section, speed = case.spheres, scales.speed_of_collision(case)
     time, mass = scales.shortest_contact(case), 0.5 * scales.lightest(case)
     if math.isfinite(time):
@@ -84,7 +69,7 @@ def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
 
 
 def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> Iterator[Row]:
-    """What the same spheres would cost as hard ones, and which method is cheaper."""
+    """Rows on the cost of the same spheres as hard ones, and on the cheaper method."""
     section, step = case.spheres, numbers["timestep"]
     flight = cost.flight_of(section, case.box)
     if flight is None or not isinstance(section.pair, ContactLaw):
@@ -112,14 +97,13 @@ def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> 
 
 def _loses(case: Case) -> bool:
     """Whether contacts take energy."""
-    section, mass = case.spheres, 0.5 * scales.lightest(case)
-    speed = scales.speed_of_collision(case)
-    return section.turns or section.pair.restitution_of(mass, speed) < 1
+    mass, speed = 0.5 * scales.lightest(case), scales.speed_of_collision(case)
+    return case.spheres.turns or case.spheres.pair.restitution_of(mass, speed) < 1
 
 
 def _warnings(case: Case, numbers: dict[str, float]) -> Iterator[str]:
     section, touching = case.spheres, isinstance(case.spheres.pair, ContactLaw)
-    yield from falls.warnings(case, touching and (section.pair.friction > 0 or rubs(case)))
+    yield from warnings_of_falls(case, touching and (section.pair.friction > 0 or rubs(case)))
     usual = scales.usual_timestep(case)
     if not touching and numbers["timestep"] > LONG * usual:
         yield (

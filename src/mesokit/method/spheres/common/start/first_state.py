@@ -1,8 +1,8 @@
-"""What a run of spheres starts from: the start of its case, or arrays, all checked."""
+"""The first state of a run of spheres: by the start of its case or by arrays, all checked."""
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,37 +12,49 @@ from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.loops.neighbours import near_pairs
-from mesokit.method.spheres.common.made import Made
-from mesokit.method.spheres.common.start import thermal
+from mesokit.method.spheres.common.draws import normal_rows
+from mesokit.method.spheres.common.made import Made, made
 from mesokit.method.spheres.common.start.lattice import shut
-from mesokit.method.spheres.common.start.protocol import Array, Placed, Started
+from mesokit.method.spheres.common.start.protocol import Array, Placed
 
 ROUNDING = 1e-5  # of a diameter: files keep places as float32
 ARRAYS, RUN = ("positions", "velocities", "spins"), "spheres.start.run"
+VELOCITIES, SPINS = 61, 62  # purposes of random numbers, above METHOD
 
 
-def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float) -> Started:
+class Started(NamedTuple):
+    """The first state by particle number: positions and velocities (n, d), spins ((n,) in 2D,
+    (n, 3) in 3D), and diameters (n,) where they are not those of the case."""
+
+    positions: Array
+    velocities: Array
+    spins: Array
+    diameters: Array | None = None
+
+
+def first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
     """Places, velocities and spins of all. Raises CaseError for arrays that do not fit.
 
     Velocities and spins that are not given are drawn. Only hard spheres must not overlap.
     """
-    d, known = case.box.dimension, given_state(case, made, arrays)
-    at_rest = not case.walls and not case.spheres.gravity
-    kT, velocities, spins = case.spheres.kT, known.velocities, known.spins
+    section, d, own = case.spheres, case.box.dimension, made(case)
+    known = given_state(case, own, arrays)
+    velocities, spins = known.velocities, known.spins
     if velocities is None:
-        velocities = thermal.velocities(case.run.seed, made, kT, d, at_rest)
+        at_rest = not case.walls and not section.gravity
+        velocities = thermal_velocities(case.run.seed, own, section.kT, d, at_rest)
     if spins is None:
-        spins = thermal.spins(case.run.seed, made, spin_kT, d)
-    if arrays.get("positions") is not None or case.spheres.start.files():
-        own = made.diameters if known.diameters is None else known.diameters
-        if case.spheres.hard:
-            require_apart(known.positions, own, np.array(case.box.size, float), shut(case))
+        spins = thermal_spins(case.run.seed, own, section.first_spin_kT, d)
+    if arrays.get("positions") is not None or section.start.files():
+        diameters = own.diameters if known.diameters is None else known.diameters
+        if section.hard:
+            require_apart(known.positions, diameters, np.array(case.box.size, float), shut(case))
         warn_outside("positions", known.positions, case.box, closed_axes(case.walls))
     return Started(known.positions, velocities, spins, known.diameters)
 
 
 def given_state(case: Case, made: Made, arrays: Mapping[str, Any]) -> Placed:
-    """What arrays give, and else the start of the case. Raises CaseError for what does not fit."""
+    """The state by arrays, and else by the start of the case. Raises CaseError for a bad array."""
     d, n = case.box.dimension, len(made.diameters)
     shapes = {"positions": (n, d), "velocities": (n, d), "spins": (n,) if d == 2 else (n, 3)}
     given = {
@@ -55,20 +67,6 @@ def given_state(case: Case, made: Made, arrays: Mapping[str, Any]) -> Placed:
     return case.spheres.start.place(case, made)._replace(**given)
 
 
-def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]) -> None:
-    """Raise CaseError for spheres that lie on one another, or on plates, by more than rounding."""
-    largest = float(diameters.max())
-    beyond = np.minimum(places, size - places) - 0.5 * diameters[:, None]
-    lowest = np.where(closed, beyond, np.inf).min(axis=1)
-    if (lowest < -ROUNDING * largest).any():
-        raise CaseError(f"positions: sphere {int(lowest.argmin())} lies in a plate")
-    one, two, distance = near_pairs(places, largest, np.where(closed, 0.0, size))
-    gaps = distance - 0.5 * (diameters[one] + diameters[two])
-    if len(gaps) and gaps.min() < -ROUNDING * largest:
-        i, j = one[gaps.argmin()], two[gaps.argmin()]
-        raise CaseError(f"positions: spheres {i} and {j} overlap by {-gaps.min():.3g}")
-
-
 def _checked(name: str, given: Any, shape: tuple[int, ...]) -> Array:
     try:
         found = np.asarray(given, float)
@@ -79,6 +77,48 @@ def _checked(name: str, given: Any, shape: tuple[int, ...]) -> Array:
     if not np.isfinite(found).all():
         raise CaseError(f"{name}: row {int(np.argwhere(~np.isfinite(found))[0][0])} is not finite")
     return found
+
+
+def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]) -> None:
+    """Raise CaseError for spheres that overlap one another, or plates, by more than rounding."""
+    largest = float(diameters.max())
+    beyond = np.minimum(places, size - places) - 0.5 * diameters[:, None]
+    lowest = np.where(closed, beyond, np.inf).min(axis=1)
+    if (lowest < -ROUNDING * largest).any():
+        raise CaseError(f"positions: sphere {int(lowest.argmin())} lies in a plate")
+    one, other, distances = near_pairs(places, largest, np.where(closed, 0.0, size))
+    gaps = distances - 0.5 * (diameters[one] + diameters[other])
+    if len(gaps) and gaps.min() < -ROUNDING * largest:
+        i, j = one[gaps.argmin()], other[gaps.argmin()]
+        raise CaseError(f"positions: spheres {i} and {j} overlap by {-gaps.min():.3g}")
+
+
+def thermal_velocities(
+    seed: int, made: Made, kT: float, dimension: int, at_rest: bool = True
+) -> Array:
+    """Maxwellian velocities (n, d); of zero total momentum if `at_rest`, with exactly the thermal
+    energy that these degrees of freedom have: m v^2 adds up to (n - 1) d kT, or n d kT.
+    """
+    n = len(made.masses)
+    v = normal_rows(seed, 0, VELOCITIES, n, dimension) / np.sqrt(made.masses)[:, None]
+    degrees = n * dimension
+    if at_rest and n > 1:
+        v -= made.masses @ v / made.masses.sum()
+        degrees -= dimension
+    return _scaled(v, made.masses, degrees, kT)
+
+
+def thermal_spins(seed: int, made: Made, kT: float, dimension: int) -> Array:
+    """Maxwellian angular velocities, (n,) in 2D and (n, 3) in 3D."""
+    n, axes = len(made.masses), 1 if dimension == 2 else 3
+    drawn = normal_rows(seed, 0, SPINS, n, 3)[:, :axes] / np.sqrt(made.inertia)[:, None]
+    w = _scaled(drawn, made.inertia, n * axes, kT)
+    return w[:, 0] if dimension == 2 else w
+
+
+def _scaled(v: Array, weights: Array, degrees: int, kT: float) -> Array:
+    twice = float(weights @ (v * v).sum(axis=1))
+    return v * np.sqrt(kT * degrees / twice) if twice > 0 else v
 
 
 def starts(case: Case) -> dict[str, Path]:

@@ -49,12 +49,10 @@ class LatticeStart(SphereStart):
                 f"spheres.start.rule = {show(self.rule)}: not with solids other than plates; "
                 "expected 'random'"
             )
-        section, box = case.spheres, case.box
-        largest = section.largest(box)
+        largest, number = case.spheres.largest(case.box), case.spheres.count(case.box)
         free = self.free(case, largest)
         if free.min() <= 0:
             raise CaseError(f"spheres: no room for a diameter of {largest:.4g} between the walls")
-        number = section.count(box)
         if self.spacing(number, free) >= largest:
             return
         sites = self.sites(number, free, shut(case))  # of which some may be left empty
@@ -70,13 +68,14 @@ class LatticeStart(SphereStart):
         return np.array(case.box.size, float) - largest * shut(case)
 
     def place(self, case: Case, made: Made) -> Placed:
-        """Sites for all, a radius off the walls."""
         largest, n = case.spheres.largest(case.box), len(made.diameters)
         sites = self.sites(n, self.free(case, largest), shut(case)) + 0.5 * largest * shut(case)
-        return Placed(sites[mixed(case.run.seed, n, len(case.spheres.kinds))])
+        mixed = len(case.spheres.kinds) > 1
+        order = np.random.default_rng(case.run.seed).permutation(n) if mixed else np.arange(n)
+        return Placed(sites[order])
 
     def spacing(self, n: int, size: Array) -> float:
-        """The shortest distance of two sites of the lattice on which so many find room."""
+        """The shortest distance of two sites of a lattice for n spheres."""
         within = np.array(CELLS[self.lattice, len(size)][0])
         cells = np.array(list(itertools.product((-1, 0, 1), repeat=len(size))))
         separations = (within[:, None, None] - within[None, :, None] + cells).reshape(-1, len(size))
@@ -84,7 +83,7 @@ class LatticeStart(SphereStart):
         return float(found[found > 0].min())
 
     def sites(self, n: int, size: Array, shut: NDArray[np.bool_]) -> Array:
-        """So many places (n, d) in a room."""
+        """Places (n, d) on the lattice in a room of lengths `size`."""
         cells, within = unit_cells(self.lattice, size, n), CELLS[self.lattice, len(size)][0]
         corners = np.stack(np.meshgrid(*map(np.arange, cells), indexing="ij"), -1)
         every = (corners.reshape(-1, 1, len(size)) + np.array(within)).reshape(-1, len(size))
@@ -99,7 +98,7 @@ def shut(case: Case) -> NDArray[np.bool_]:
 
 
 def unit_cells(lattice: str, size: Array, n: int) -> Integers:
-    """How many unit cells along each axis hold n sites, as little stretched as may be."""
+    """Numbers of unit cells along the axes that hold n sites and are stretched least."""
     sites, sides = CELLS[lattice, len(size)]
     relative = size / np.array(sides)
     edge = (relative.prod() * len(sites) / n) ** (1 / len(size))
@@ -107,11 +106,6 @@ def unit_cells(lattice: str, size: Array, n: int) -> Integers:
     while found.prod() * len(sites) < n:
         found[np.argmax(relative / found)] += 1
     return found
-
-
-def mixed(seed: int, n: int, kinds: int) -> Integers:
-    """The order in which spheres take sites: as they are numbered, unless kinds are to be mixed."""
-    return np.arange(n) if kinds == 1 else np.random.default_rng(seed).permutation(n)
 
 
 def shortest_distance(places: Array, size: Array, shut: NDArray[np.bool_]) -> float:

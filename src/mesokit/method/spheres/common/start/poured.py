@@ -10,7 +10,7 @@ from mesokit.errors import CaseError
 from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.start.protocol import Placed, SphereStart
 from mesokit.method.spheres.common.start.random import RandomStart
-from mesokit.method.spheres.common.wall.surfaces import room_of
+from mesokit.method.spheres.common.walls import room_of
 
 APART = 1.003  # diameters of hard ones while they fall: none lies on another afterwards
 

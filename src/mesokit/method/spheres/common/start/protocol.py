@@ -1,29 +1,15 @@
-"""What a start answers: places of spheres, and velocities where they are not to be drawn."""
+"""Base of the starts of spheres: places, and velocities where they are not to be drawn."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from mesokit.case.case import Case
 from mesokit.case.component import component
 from mesokit.case.registry import family
 from mesokit.method.spheres.common.made import Made
-
-Array = NDArray[np.float64]
-
-
-class Started(NamedTuple):
-    """What an engine is filled with, by particle number: positions and velocities (n, d), spins
-    ((n,) in 2D, (n, 3) in 3D), and diameters (n,) where they are not those of the case."""
-
-    positions: Array
-    velocities: Array
-    spins: Array
-    diameters: Array | None = None
+from mesokit.seam.engine import Array
 
 
 class Placed(NamedTuple):
@@ -39,7 +25,7 @@ class Placed(NamedTuple):
 @family("start of spheres", "rule", "mesokit.sphere_start")
 @component
 class SphereStart(ABC):
-    """Where spheres are at first."""
+    """A rule for the first places of spheres."""
 
     def check(self, case: Case) -> None:  # noqa: B027  # most can begin anywhere
         """Raise CaseError where there is no room for all."""

@@ -1,4 +1,4 @@
-"""What two hard spheres do to one another. A new rule is a file here."""
+"""Collision rules of hard spheres. A new rule is a file here."""
 
 from mesokit.case.registry import parts_in
 from mesokit.method.spheres.hard.collision.protocol import SphereCollision

@@ -1,11 +1,15 @@
 """A restitution that does not depend on the speed."""
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 from mesokit.case.component import component, param, tag
 from mesokit.method.spheres.hard.collision.protocol import SphereCollision, restitution
+
+
+class Constant(NamedTuple):
+    """The coefficient of restitution."""
+
+    value: float
 
 
 @component
@@ -25,26 +29,14 @@ class HardCollision(SphereCollision):
 
     @property
     def elastic(self) -> bool:
-        """Whether it keeps energy: that of spins as well."""
-        rough = self.tangential == 1.0 and self.friction is None
-        return self.restitution == 1.0 and (not self.rough or rough)
+        return self.keeps_energy(self.restitution)
 
     @property
     def constant_restitution(self) -> float:
-        """The coefficient of restitution, at any speed."""
         return self.restitution
 
     def kernel(self) -> Constant:
-        """Parameters for the scalar function below."""
         return Constant(self.restitution)
 
 
-class Constant(NamedTuple):
-    """The coefficient of restitution."""
-
-    value: float
-
-
-@restitution.register(Constant)
-def _(rule, speed):
-    return rule.value
+restitution.register(Constant)(lambda rule, speed: rule.value)

@@ -1,4 +1,4 @@
-"""What a collision rule of hard spheres is."""
+"""Base of the collision rules of hard spheres, and their compiled functions."""
 
 import math
 from abc import ABC, abstractmethod
@@ -14,8 +14,7 @@ from mesokit.scalar.vector import dot
 def touching(r, v, reach, growth):
     """The time after which |r + v t| = reach + growth t from above, infinite if never.
 
-    Whether they meet is asked last, of numbers that are all there: a processor does many pairs at
-    once as long as it need not guess.
+    The branch comes last, when all numbers are there, so that the compiler makes vectors of pairs.
     """
     a = dot(v, v) - growth * growth
     b = dot(r, v) - reach * growth
@@ -31,7 +30,7 @@ def touching(r, v, reach, growth):
 @family("collision rule of hard spheres", "rule", "mesokit.sphere_collision")
 @component
 class SphereCollision(ABC):
-    """What two spheres do to one another when they touch.
+    """Collision rule of two hard spheres.
 
     The tangential velocity of the contact after a collision is minus `tangential` times that
     before, unless the impulse would be more than `friction` times the normal one (Walton 1993): -1
@@ -95,6 +94,11 @@ class SphereCollision(ABC):
         """Whether it changes spins."""
         return self.tangential > -1.0 and self.friction != 0.0
 
+    def keeps_energy(self, restitution: float) -> bool:
+        """Whether energy, that of spins included, is kept at this restitution."""
+        perfectly_rough = self.tangential == 1.0 and self.friction is None
+        return restitution == 1.0 and (not self.rough or perfectly_rough)
+
 
 @generic
 def restitution(rule, speed):
@@ -103,9 +107,9 @@ def restitution(rule, speed):
 
 @generic
 def next_contact(rule, r, v, contact, growth):
-    """The time after which something happens between two spheres, infinite if nothing does.
+    """The time after which two spheres have an event, infinite if they have none.
 
-    r and v lead from one to the other; their surfaces meet at the distance contact + growth t.
+    r and v are relative place and velocity; surfaces meet at the distance contact + growth t.
     """
 
 

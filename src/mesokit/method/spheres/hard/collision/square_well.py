@@ -1,7 +1,5 @@
 """Hard spheres that attract one another within a distance."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal, NamedTuple
 
@@ -17,6 +15,14 @@ from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
 
 ON_EDGE = 1e-12  # of r^2: a pair as near to the edge has just arrived there
+
+
+class Well(NamedTuple):
+    """Depth, width in diameters, and restitution."""
+
+    depth: float
+    width: float
+    value: float
 
 
 @component
@@ -43,13 +49,10 @@ class SquareWell(SphereCollision):
 
     @property
     def elastic(self) -> bool:
-        """Whether it keeps energy: that of spins and pairs as well."""
-        perfectly_rough = self.tangential == 1.0 and self.friction is None
-        return self.restitution == 1.0 and (not self.rough or perfectly_rough)
+        return self.keeps_energy(self.restitution)
 
     @property
     def reach(self) -> float:
-        """Range of the potential, in diameters."""
         return self.width
 
     @property
@@ -57,21 +60,10 @@ class SquareWell(SphereCollision):
         return -self.depth
 
     def kernel(self) -> Well:
-        """Parameters for the scalar functions below."""
         return Well(self.depth, self.width, self.restitution)
 
 
-class Well(NamedTuple):
-    """Depth, width in diameters, and restitution."""
-
-    depth: float
-    width: float
-    value: float
-
-
-@restitution.register(Well)
-def _(rule, speed):
-    return rule.value
+restitution.register(Well)(lambda rule, speed: rule.value)
 
 
 @scalar

@@ -1,7 +1,5 @@
 """Spheres that lose more the faster they meet."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal, NamedTuple
 
@@ -10,6 +8,13 @@ from mesokit.method.spheres.hard.collision.protocol import SphereCollision, rest
 from mesokit.scalar.jit import scalar
 
 STEPS = 12  # more than are needed from 1e-60 to 1e60
+
+
+class Falling(NamedTuple):
+    """A, and the least value."""
+
+    dissipation: float
+    least: float
 
 
 @component
@@ -36,15 +41,7 @@ class Viscoelastic(SphereCollision):
         return False
 
     def kernel(self) -> Falling:
-        """Parameters for the scalar function below."""
         return Falling(self.dissipation, self.least)
-
-
-class Falling(NamedTuple):
-    """A, and the least value."""
-
-    dissipation: float
-    least: float
 
 
 @scalar
@@ -67,6 +64,6 @@ def fifth_root(x):
 @restitution.register(Falling)
 def _(rule, speed):
     x = rule.dissipation * fifth_root(speed)
-    # the series has its minimum at x = 5/6, beyond which it means nothing
+    # The series has its minimum at x = 5/6 and is not valid beyond.
     x = min(x, 5.0 / 6.0)
     return max(1.0 - x + 0.6 * x * x, rule.least)

@@ -6,29 +6,43 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.loops.neighbours import nearest_image
-from mesokit.method.spheres.common.wall.rows import MOVES, vibration
+from mesokit.method.spheres.common.walls import MOVES, entries, outward, vibration
 from mesokit.method.spheres.hard.collision.protocol import restitution, step_of_energy
-from mesokit.method.spheres.hard.engine.flights import note_flight
-from mesokit.method.spheres.hard.engine.groups import (
-    ELASTIC,
-    IN_A_ROW,
-    INERTIA,
-    LAST,
-    MASS,
-    PAIRS,
-    RADIUS,
-    SPIN,
-    VELOCITY,
-    VIRIAL,
-    WALLS,
-)
-from mesokit.method.spheres.hard.engine.motion import bring_to, entries, put_entries
-from mesokit.method.spheres.hard.engine.walls import outward
+from mesokit.method.spheres.hard.engine.groups import INERTIA, LAST, MASS, RADIUS, SPIN, VELOCITY
+from mesokit.method.spheres.hard.engine.motion import bring_to, put_entries
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import METHOD, Counter, normals, unit, words
 from mesokit.scalar.vector import added_scaled, dot, outer, scaled
 
 THERMAL = METHOD + np.uint64(70)  # purpose of the random numbers of thermal walls
+
+
+# places in `Tally.counts`, in `Tally.sums`, and in `Flights.sums`
+PAIRS, WALLS, ELASTIC, IN_A_ROW, COUNTS = 0, 1, 2, 3, 4
+VIRIAL, SUMS = 0, 1
+TIMES, SQUARES = 0, 1
+
+
+class Flights(NamedTuple):
+    """Free flights between collisions. per_time: bins in a unit of time; counts (bins + 1,), the
+    last of all longer flights; sums (2,) of their times and of the squares."""
+
+    per_time: float
+    counts: Any
+    sums: Any
+
+
+class Tally(NamedTuple):
+    """Counts and sums over events.
+
+    counts (4,), sums (1,); impulse (walls, d): momentum that each wall has taken; flights: Flights,
+    or () where no observable reads them, and nothing is compiled for it.
+    """
+
+    counts: Any
+    sums: Any
+    impulse: Any
+    flights: Any
 
 
 class Rules(NamedTuple):
@@ -40,15 +54,6 @@ class Rules(NamedTuple):
     friction: float
     at_walls: Any
     seed: np.uint64
-
-
-class Contact(NamedTuple):
-    """Two surfaces that touch: inverse masses, radius and inverse inertia of each; of a wall 0."""
-
-    inverse: float
-    inverse_other: float
-    lever: float
-    lever_other: float
 
 
 @by_type
@@ -87,7 +92,7 @@ def impulse_of(masses, levers, u, n, e, tangential, friction):
 
 @scalar
 def add_impulse(spheres, i, v, impulse, turned):
-    """Give sphere i an impulse, and an angular one."""
+    """Add an impulse and an angular impulse to sphere i."""
     body = spheres.body
     put_entries(spheres.state, i, VELOCITY, added_scaled(v, 1.0 / body[i, MASS], impulse))
     if body[i, INERTIA] > 0.0:
@@ -103,7 +108,10 @@ def surface_velocity(spheres, i, v, lever):
 
 @scalar
 def collide_pair(world, rules, spheres, tally, i, j, time):
-    """Two spheres touch: their velocities and spins change at once."""
+    """Two spheres touch, or are at a step of their potential: velocities and spins change at once.
+
+    Both are brought from the times of their last events to `time`.
+    """
     if spheres.number[j] < spheres.number[i]:
         i, j = j, i  # in order of their numbers
     state, body = spheres.state, spheres.body
@@ -114,9 +122,9 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     n = scaled(1.0 / distance, apart)
     spheres.hits[i] += 1
     spheres.hits[j] += 1
-    energy, is_step = step_of_energy(rules.pair, distance, state[i, RADIUS] + state[j, RADIUS])
+    masses, radii = 1.0 / body[i, MASS] + 1.0 / body[j, MASS], state[i, RADIUS] + state[j, RADIUS]
+    energy, is_step = step_of_energy(rules.pair, distance, radii)
     if is_step:
-        masses = 1.0 / body[i, MASS] + 1.0 / body[j, MASS]
         total = scaled(over_step(masses, dot(added_scaled(v_i, -1.0, v_j), n), energy), n)
         put_entries(state, i, VELOCITY, added_scaled(v_i, 1.0 / body[i, MASS], total))
         put_entries(state, j, VELOCITY, added_scaled(v_j, -1.0 / body[j, MASS], total))
@@ -124,11 +132,8 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
         return
     lever_i, lever_j = scaled(-state[i, RADIUS], n), scaled(state[j, RADIUS], n)
     u = added_scaled(
-        surface_velocity(spheres, i, v_i, lever_i),
-        -1.0,
-        surface_velocity(spheres, j, v_j, lever_j),
+        surface_velocity(spheres, i, v_i, lever_i), -1.0, surface_velocity(spheres, j, v_j, lever_j)
     )
-    masses = 1.0 / body[i, MASS] + 1.0 / body[j, MASS]
     levers = turning(state, body, i) + turning(state, body, j)
     closing = -dot(u, n)
     e, tangential, friction = restitution(rules.pair, closing), rules.tangential, rules.friction
@@ -139,10 +144,9 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
         tally.counts[ELASTIC] += 1
     normal, along = impulse_of(masses, levers, u, n, e, tangential, friction)
     total = added_scaled(along, normal, n)
-    # surfaces that grow push one another apart
-    growing = (state[i, RADIUS] + state[j, RADIUS]) * world.growth / masses
-    total = added_scaled(total, 2.0 * growing, n)
-    # only what is along the surface turns: rounding must not
+    # Surfaces of growing spheres move apart after a collision.
+    total = added_scaled(total, 2.0 * (radii * world.growth / masses), n)
+    # The normal part exerts no torque; leaving it out avoids rounding errors.
     add_impulse(spheres, i, v_i, total, outer(lever_i, along))
     add_impulse(spheres, j, v_j, scaled(-1.0, total), outer(lever_j, scaled(-1.0, along)))
     note_flight(tally.flights, time - body[i, LAST])
@@ -152,9 +156,26 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     tally.sums[VIRIAL] += dot(apart, total)
 
 
+@by_type
+def note_flight(flights, lasted):
+    """Count a flight that has ended; the first one of a sphere is infinite, as it had no start."""
+    if len(flights) == 0:
+        return lambda flights, lasted: None
+
+    def note(flights, lasted):
+        if lasted < np.inf:
+            bins = len(flights.counts) - 1
+            place = min(lasted * flights.per_time, float(bins))
+            flights.counts[int(max(place, 0.0))] += 1
+            flights.sums[TIMES] += lasted
+            flights.sums[SQUARES] += lasted * lasted
+
+    return note
+
+
 @scalar
 def note_pause(world, tally, since):
-    """Count collisions in a row that come no time after the last of one of both."""
+    """Count collisions in a row for which the time since the last of a sphere counts as none."""
     tally.counts[IN_A_ROW] = tally.counts[IN_A_ROW] + 1 if since < world.instant else 0
 
 
@@ -162,12 +183,9 @@ def note_pause(world, tally, since):
 def over_step(masses, parting, energy):
     """The impulse along the line of centres at a step of the potential, which is lower by `energy`
     within; `masses` is the sum of inverse masses, `parting` the velocity along the line."""
-    square = parting * parting
-    if parting < 0.0:
-        after = square + 2.0 * energy * masses
-        return (-math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
-    after = square - 2.0 * energy * masses
-    return (math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
+    sign = -1.0 if parting < 0.0 else 1.0
+    after = parting * parting - sign * 2.0 * energy * masses
+    return (sign * math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
 
 
 @scalar
@@ -178,10 +196,10 @@ def turning(state, body, i):
 
 @scalar
 def collide_wall(world, rules, spheres, tally, i, w, time):
-    """A sphere touches a wall."""
+    """A sphere touches a wall at `time`, to which it is brought: it is reflected, or sent out."""
     state, body, walls = spheres.state, spheres.body, world.walls
     r, v = bring_to(world, spheres, i, time)
-    _, n = outward(world, w, r)
+    _, n = outward(walls, w, world, r)
     _, speed, _ = vibration(walls, w, time)
     wall_velocity = added_scaled(entries(walls, w, MOVES, r), speed, n)
     tally.counts[WALLS] += 1
@@ -194,7 +212,9 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
     else:
         lever = scaled(-state[i, RADIUS], n)
         u = added_scaled(surface_velocity(spheres, i, v, lever), -1.0, wall_velocity)
-        e, tangential = wall_restitution(rules, w, -dot(u, n)), rules.at_walls[w, 1]
+        e, tangential = rules.at_walls[w, 0], rules.at_walls[w, 1]
+        if e < 0.0:  # as of two spheres
+            e = restitution(rules.pair, -dot(u, n))
         note_pause(world, tally, time - body[i, LAST])
         if time - body[i, LAST] < world.lasting:
             e, tangential = 1.0, -1.0
@@ -212,15 +232,8 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
 
 
 @scalar
-def wall_restitution(rules, w, speed):
-    """The restitution of a wall, or that of two spheres if the wall has none."""
-    given = rules.at_walls[w, 0]
-    return given if given >= 0.0 else restitution(rules.pair, speed)
-
-
-@scalar
 def sent_out(rules, spheres, i, n, kT):
-    """A velocity of those that leave a wall in equilibrium: along the normal by their flux."""
+    """A random velocity of spheres that leave a wall in equilibrium, weighted by their flux."""
     number, hits = spheres.number[i], spheres.hits[i]
     a, b, c, d = words(Counter(rules.seed, np.uint64(hits)), THERMAL, number, 0)
     e, f, _, _ = words(Counter(rules.seed, np.uint64(hits)), THERMAL, number, 1)

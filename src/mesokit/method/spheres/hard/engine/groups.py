@@ -13,18 +13,16 @@ MASS, INERTIA, LAST, SPIN, BODY_WIDTH = 0, 1, 2, 3, 6
 # columns of `Queue.event`: the partner, and its collisions when predicted (the last 32 bits);
 # BIN is -1 for those in the heap, PLACE is where they are in it
 PARTNER, PARTNER_HITS, AFTER, PREVIOUS, BIN, PLACE, EVENT_WIDTH = 0, 1, 2, 3, 4, 5, 8
-# what a sphere's next event is with, where it is with no other sphere
-LEAVES, NOTHING = -1, -2  # the surroundings of its list; never
-LOST = -3  # a wall, but the search for the time of that failed
+# partner of an event that is with no other sphere
+LEAVES, NOTHING = -1, -2  # it leaves the shell of its list; no event
+LOST = -3  # a wall, but the search for the time of contact failed
 FIRST_WALL = -4  # and below: walls, -4 - number
-# how `advance` ends
-DONE, FULL, COLLAPSED, PAUSED, FAILED = 0, 1, 2, 3, 4
 
 
-class World(NamedTuple):
-    """The constants of a run: lengths (d,) of the box, their inverses (d,; 0 along closed axes),
-    acceleration (d,), relative rate at which diameters grow, walls (walls, 16), and `lasting`:
-    collisions less than this after another are elastic; `instant`: a time that is none."""
+class HardWorld(NamedTuple):
+    """The constants of a window: lengths (d,) of the box, their inverses (d,; 0 along closed axes),
+    acceleration (d,), relative growth of diameters per time, walls (walls, 14); lasting: collisions
+    sooner than this after another are elastic; instant: a time that counts as none."""
 
     size: tuple[float, ...]
     inverse: tuple[float, ...]
@@ -46,13 +44,13 @@ class SphereMemory(NamedTuple):
     hits: Any
 
 
-class Lists(NamedTuple):
+class HardLists(NamedTuple):
     """Neighbour lists: pairs that may collide before one of them is `shell` away from its centre.
 
-    centre (n, 4): these places, and how far one may go; cells (d,), inverse (d,): of the grid;
-    cell (n,), head (cells,), following (n,), before (n,): the centres of each cell, linked;
-    count (n,), near (n, most): the lists; columns (8, most), times
-    (most,): the states of those on one list, and when they are met.
+    widest: largest distance of interaction in the window over the sum of radii; cells, inverse
+    (d,): of the grid; centre (n, 4): places where lists were made; cell (n,), head (cells,),
+    following (n,), before (n,): the centres of each cell, linked; count (n,), near (n, most): the
+    lists; columns (8, most), times (most,): states of one list, and times of their events.
     """
 
     shell: float
@@ -84,21 +82,3 @@ class Queue(NamedTuple):
     first: Any
     heap: Any
     now: Any
-
-
-class Tally(NamedTuple):
-    """Counts and sums over events.
-
-    counts (4,), sums (1,); impulse (walls, d): momentum that each wall has taken; flights: see
-    `flights`, () where no observable reads them.
-    """
-
-    counts: Any
-    sums: Any
-    impulse: Any
-    flights: Any
-
-
-# places in `Tally.counts`, and in `Tally.sums`
-PAIRS, WALLS, ELASTIC, IN_A_ROW, COUNTS = 0, 1, 2, 3, 4
-VIRIAL, SUMS = 0, 1

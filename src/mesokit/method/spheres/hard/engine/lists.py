@@ -1,23 +1,24 @@
-"""Lists of neighbours: two spheres are on one another's list if their centres allow them to meet.
+"""Neighbour lists: two spheres are on each other's list if they can meet within their shells.
 
-A centre is where a sphere was when its list was made. When the sphere is a shell away from
-it, this sphere alone gets a new centre and list, and enters the lists of others. Spheres cross no
-cells, as only centres lie in the grid.
+The centre of a shell is the place of a sphere when its list was made. When the sphere leaves the
+shell, it alone gets a new centre and list, and enters the lists of others. The grid of cells holds
+centres, so that spheres cross no cells.
 """
 
 import math
 
 from mesokit.loops.cells import NOWHERE, cell_around, cell_of, cells_along
 from mesokit.loops.neighbours import nearest_image
+from mesokit.method.spheres.common.walls import entries
 from mesokit.method.spheres.hard.engine.groups import RADIUS
-from mesokit.method.spheres.hard.engine.motion import entries, put_entries
+from mesokit.method.spheres.hard.engine.motion import put_entries
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added_scaled, dot
 
 
 @scalar
 def link(lists, i, r):
-    """Put a centre into its cell; r lies in the box."""
+    """Put the centre r of sphere i, in the box, into its cell."""
     cell = cell_of(lists, r)
     after = lists.head[cell]
     lists.cell[i], lists.following[i], lists.before[i] = cell, after, -1
@@ -40,7 +41,7 @@ def unlink(lists, i):
 
 @scalar
 def forget(lists, i):
-    """Take i off the lists of all others, and empty its own."""
+    """Remove i from the lists of all others, and empty its own."""
     # Lists are mutual: i is on the list of each of its neighbours. The last entry there takes its
     # place; the order of lists does not matter, since equal times are decided by particle numbers.
     for a in range(lists.count[i]):
@@ -56,7 +57,7 @@ def forget(lists, i):
 
 @scalar
 def renew(world, lists, state, i, r):
-    """Make the list of i anew about r, in the box; whether all lists had room."""
+    """Make the list of i anew about r, in the box; true if there was room."""
     unlink(lists, i)
     forget(lists, i)
     put_entries(lists.centre, i, 0, r)
@@ -68,22 +69,22 @@ def renew(world, lists, state, i, r):
 def find(world, lists, state, i, r):
     """Put all spheres that may meet i on its list, and i on theirs; true if there was room."""
     room = True
-    # Cells are at least as long as two centres may be apart and still matter.
+    # The cells around the centre; each is at least as long as two centres on a list may be apart.
     here = cells_along(lists, r)
     for n in range(3 ** len(r)):
         cell = cell_around(lists, world, r, here, 0.0, n)
         if cell != NOWHERE:
-            room &= take(world, lists, state, i, r, cell)
+            room &= list_cell(world, lists, state, i, r, cell)
     return room
 
 
 @scalar
-def take(world, lists, state, i, r, cell):
+def list_cell(world, lists, state, i, r, cell):
     """Put the spheres of a cell that may meet i on the lists; true if there was room."""
     most, j, room = lists.near.shape[1], lists.head[cell], True
     mine = state[i, RADIUS] * lists.widest + 2.0 * lists.shell
     # Two spheres can meet before either is renewed if their centres are nearer than both radii and
-    # two shells. Lists are mutual, so `forget` can take a sphere off all of them.
+    # two shells. Lists are mutual, so `forget` can remove a sphere from all of them.
     while j >= 0:
         apart = nearest_image(world, added_scaled(entries(lists.centre, j, 0, r), -1.0, r))
         reach = mine + state[j, RADIUS] * lists.widest
@@ -101,10 +102,8 @@ def take(world, lists, state, i, r, cell):
 
 @scalar
 def time_to_leave(world, lists, r, v, centre):
-    """A time after which a sphere may be a shell away from its centre, not later than it is.
-
-    With gravity it is a lower bound, from the speed that it could have.
-    """
+    """The time after which a sphere leaves its shell; with gravity a lower bound, from its largest
+    speed."""
     gone = nearest_image(world, added_scaled(r, -1.0, centre))
     square, shell = dot(gone, gone), lists.shell
     pull = math.sqrt(dot(world.gravity, world.gravity))
@@ -113,7 +112,7 @@ def time_to_leave(world, lists, r, v, centre):
         left = max(shell - math.sqrt(square), 0.0)
         u = math.sqrt(speed)
         return 2.0 * left / (u + math.sqrt(u * u + 2.0 * pull * left))
-    if speed < 1e-200:  # whose square is nothing
+    if speed < 1e-200:  # the square underflows
         return math.inf
     b = dot(gone, v)
     return (math.sqrt(max(b * b + speed * (shell * shell - square), 0.0)) - b) / speed

@@ -4,18 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mesokit.method.spheres.common.walls import entries
 from mesokit.method.spheres.hard.collision.protocol import next_contact
 from mesokit.method.spheres.hard.engine.groups import RADIUS, TIME, VELOCITY
 from mesokit.scalar.elementary import rint
 from mesokit.scalar.intrinsics import floor, mul_add, with_item
 from mesokit.scalar.jit import elementwise, for_each, scalar
 from mesokit.scalar.vector import added_scaled
-
-
-@elementwise
-def entries(rows, i, start, pattern):
-    """Consecutive entries of row i, as a tuple as long as `pattern`."""
-    return "rows[i, start + {k}]"
 
 
 @for_each
@@ -90,28 +85,22 @@ def of_row(state, i, pattern):
 
 
 @scalar
-def meeting(world, rule, one, other, now, growth):
-    """The time at which something happens between two spheres, infinite if nothing does.
+def pair_event_time(world, rule, one, other, now, growth):
+    """The time of the next event of two spheres, infinite without one.
 
-    Diameters grow by `growth` per time. The answer follows from the states of both at the later of
-    their own times, and does not depend on when it is asked for. Of their images those are meant
-    that are nearest `now`. Spheres that overlap by rounding and come nearer touch at once
+    Diameters grow by the part `growth` per time. The result follows from the states of both at the
+    later of their own times, so it does not depend on when it is computed. `now` selects images:
+    those that are nearest then. Spheres that overlap by rounding and come nearer touch at once
     (Bannerman, Strobl, Formella and Poeschel 2014).
     """
     g, since = world.gravity, max(one.time, other.time)
     mine, its = since - one.time, since - other.time
     apart = added_scaled(fallen(one.r, mine, one.v, g), -1.0, fallen(other.r, its, other.v, g))
     v = added_scaled(added_scaled(one.v, mine, g), -1.0, added_scaled(other.v, its, g))
-    apart = meant_image(world, apart, v, now - since)
+    # The image of `apart` that is nearest at the time `now`.
+    for k in range(len(apart)):
+        boxes = rint(mul_add(now - since, v[k], apart[k]) * world.inverse[k])
+        apart = with_item(apart, k, apart[k] - boxes * world.size[k])
     reach = one.radius + other.radius
     growth = reach * growth if growth != 0.0 else 0.0
     return since + next_contact(rule, apart, v, mul_add(growth, since, reach), growth)
-
-
-@scalar
-def meant_image(world, r, v, tau):
-    """The image that is nearest after a time."""
-    for k in range(len(r)):
-        boxes = rint(mul_add(tau, v[k], r[k]) * world.inverse[k])
-        r = with_item(r, k, r[k] - boxes * world.size[k])
-    return r

@@ -1,6 +1,6 @@
-"""The order of events: a calendar of bins, and a heap of those that are due (Paul 2007).
+"""The queue of events: a calendar of bins of time, and a heap of the current bin (Paul 2007).
 
-Putting in, taking out and finding the next cost a time that does not depend on how many there are.
+The cost of an insertion, of a removal and of the next event does not depend on their number.
 """
 
 from mesokit.method.spheres.hard.engine.groups import AFTER, BIN, PARTNER, PLACE, PREVIOUS
@@ -20,7 +20,7 @@ def sooner(queue, number, a, b):
 
 @scalar
 def key(queue, number, i):
-    """The lower and the higher particle number of an event, as one."""
+    """The lower and the higher particle number of an event, as one number."""
     mine, other = number[i], number[i]
     if queue.event[i, PARTNER] >= 0:
         other = number[queue.event[i, PARTNER]]
@@ -66,27 +66,20 @@ def sink(queue, number, place):
 
 @scalar
 def bin_at(queue, time):
-    """The bin of a time; very late ones are all the same."""
+    """The bin of a time; all very late times have one bin."""
     scaled = time * queue.per_time
     return int(scaled) if scaled < FAR else int(FAR)
 
 
 @scalar
-def push(queue, number, i):
-    """Into the heap."""
-    place = queue.now[SIZE]
-    queue.now[SIZE] = place + 1
-    queue.event[i, BIN] = HEAP
-    put_at(queue, place, i)
-    rise(queue, number, place)
-
-
-@scalar
 def insert(queue, number, i):
-    """Put in the event of i. Those beyond the calendar wait in its last bin."""
+    """Insert the event of i; events beyond the calendar wait in its last bin."""
     wanted, current = bin_at(queue, queue.time[i]), queue.now[CURRENT]
     if wanted <= current:
-        push(queue, number, i)
+        place = queue.now[SIZE]
+        queue.now[SIZE], queue.event[i, BIN] = place + 1, HEAP
+        put_at(queue, place, i)
+        rise(queue, number, place)
     else:
         bins = len(queue.first)
         b = min(wanted, current + bins - 1) & (bins - 1)
@@ -99,7 +92,7 @@ def insert(queue, number, i):
 
 @scalar
 def remove(queue, number, i):
-    """Take out the event of i."""
+    """Remove the event of i."""
     b = queue.event[i, BIN]
     if b == HEAP:
         place, last = queue.event[i, PLACE], queue.now[SIZE] - 1
@@ -122,8 +115,8 @@ def remove(queue, number, i):
 def next_event(queue, number, end):
     """The sphere with the next event, -1 if there is none before the end."""
     bins = len(queue.first)
-    # An empty heap takes all events of the next bin. The calendar is a ring: an event farther ahead
-    # than all bins waited in the last one, and `insert` puts it off again. Bins before `end` only.
+    # An empty heap takes all events of the next bin, up to that of `end`. The calendar is a ring:
+    # an event beyond all bins waited in the last one, and `insert` may put it there again.
     while queue.now[SIZE] == 0:
         if queue.now[CURRENT] >= bin_at(queue, end):
             return -1

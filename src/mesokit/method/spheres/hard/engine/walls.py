@@ -1,13 +1,12 @@
-"""When a sphere touches a wall, and where the wall is then.
+"""The time at which a hard sphere touches a wall.
 
-Planes at rest are met in closed form; other walls are approached by steps that
-are too short to come through: from a lower bound of the distance, a parabola.
+Planes at rest have a closed form. Other walls are approached in steps that are too short to pass
+them: from a lower bound of the distance, a parabola.
 """
 
 import math
 
-from mesokit.loops.neighbours import nearest_image
-from mesokit.method.spheres.common.wall.rows import (
+from mesokit.method.spheres.common.walls import (
     AMPLITUDE,
     AXIS,
     FREQUENCY,
@@ -17,88 +16,65 @@ from mesokit.method.spheres.common.wall.rows import (
     PLACE,
     PLANE,
     ROUND,
+    entries,
+    outward,
     vibration,
 )
-from mesokit.method.spheres.hard.engine.groups import RADIUS, TIME, VELOCITY
-from mesokit.method.spheres.hard.engine.motion import entries, fallen
+from mesokit.method.spheres.hard.engine.motion import fallen
 from mesokit.scalar.jit import scalar, seldom
-from mesokit.scalar.vector import added_scaled, dot, scaled
+from mesokit.scalar.vector import added_scaled, dot
 
 CLOSE = 1e-13  # of the radius of a sphere: it touches
-ROUNDING = 2e-15  # of the lengths that a gap is made of: no gap is known better
+ROUNDING = 2e-15  # relative error of the lengths that a gap is made of
 STEPS = 100_000  # of one search; those of a thousand turns of a plate are fewer
 
 
-@scalar
-def outward(world, w, r):
-    """Distance of a place from a wall that does not vibrate, and the normal into the box."""
-    walls = world.walls
-    from_place = added_scaled(r, -1.0, entries(walls, w, PLACE, r))
-    axis = entries(walls, w, AXIS, r)
-    if walls[w, KIND] == PLANE:
-        return dot(from_place, axis), axis
-    from_place = nearest_image(world, from_place)
-    across = added_scaled(from_place, -dot(from_place, axis), axis)
-    length = math.sqrt(dot(across, across))
-    normal = axis
-    if length > 0.0:
-        normal = scaled(walls[w, KIND] / length, across)
-    return walls[w, KIND] * (length - walls[w, ROUND]), normal
-
-
 @seldom
-def time_to_wall(world, state, i, w, until):
-    """The time at which sphere i touches a wall, from its own state; infinite if not before
-    `until`, NaN if it was not found.
-
-    Each step ends before the sphere may touch: the larger of two lower bounds of that time.
-    """
-    walls, g, since = world.walls, world.gravity, state[i, TIME]
-    r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
-    radius = state[i, RADIUS]
+def time_to_wall(world, one, w, until):
+    """The time at which a sphere touches a wall, from its own state; infinite if not before
+    `until`, NaN if it was not found."""
+    walls, g = world.walls, world.gravity
     if walls[w, KIND] == PLANE and walls[w, AMPLITUDE] == 0.0 and world.growth == 0.0:
-        distance, normal = outward(world, w, r)
-        return since + fall(distance - radius, dot(v, normal), dot(g, normal))
+        distance, normal = outward(walls, w, world, one.r)
+        return one.time + fall(distance - one.radius, dot(one.v, normal), dot(g, normal))
     tau = 0.0
-    # March in steps that end before the contact. For the time `longest` the gap shrinks no faster
-    # than a parabola, with the closing speed now and a bound of its growth. A vibrating plate does
-    # not matter until the sphere is within its amplitude. A gap below rounding is a contact if it
-    # closes.
+    # March from the sphere's own time in steps that end before the contact: each is the larger of
+    # two lower bounds. For the time `longest` the gap shrinks no faster than a parabola, with
+    # the closing speed now and a bound of its growth. A vibrating plate does not matter until the
+    # sphere is within its amplitude. A gap below rounding is a contact if it closes.
     for _ in range(STEPS):
-        gap, closing, bend, longest = approach(world, state, i, w, tau)
-        if gap <= CLOSE * radius + unsure(world, state, i, w, tau):
+        gap, closing, bend, longest = approach(world, one, w, tau)
+        if gap <= CLOSE * one.radius + unsure(world, one, w, tau):
             if closing > 0.0:
-                return since + tau
+                return one.time + tau
             gap = 0.0
-        tau += max(min(parabola(gap, closing, bend), longest), until_near(world, state, i, w, tau))
-        if not since + tau < until:
+        tau += max(min(parabola(gap, closing, bend), longest), until_near(world, one, w, tau))
+        if not one.time + tau < until:
             return math.inf
     return math.nan
 
 
 @scalar
-def unsure(world, state, i, w, tau):
+def unsure(world, one, w, tau):
     """The rounding error of the gap after a time: of places, and of times of fast spheres."""
-    walls, g = world.walls, world.gravity
-    r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
-    place, pull, then = entries(walls, w, PLACE, g), math.sqrt(dot(g, g)), state[i, TIME] + tau
+    walls, g, r, v = world.walls, world.gravity, one.r, one.v
+    place, pull = entries(walls, w, PLACE, g), math.sqrt(dot(g, g))
     lengths = math.sqrt(dot(r, r)) + math.sqrt(dot(place, place)) + walls[w, ROUND]
     speed = math.sqrt(dot(v, v)) + pull * tau + walls[w, AMPLITUDE] * walls[w, FREQUENCY]
-    return ROUNDING * (lengths + speed * then)
+    return ROUNDING * (lengths + speed * (one.time + tau))
 
 
 @scalar
-def until_near(world, state, i, w, tau):
+def until_near(world, one, w, tau):
     """The time until a sphere is within the amplitude of a vibrating plate; 0 for other walls."""
     walls, g = world.walls, world.gravity
     if walls[w, KIND] != PLANE or world.growth != 0.0:
         return 0.0
-    r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
-    distance, normal = outward(world, w, fallen(r, tau, v, g))
-    above = distance - walls[w, AMPLITUDE] - state[i, RADIUS]
+    distance, normal = outward(walls, w, world, fallen(one.r, tau, one.v, g))
+    above = distance - walls[w, AMPLITUDE] - one.radius
     if above <= 0.0:
         return 0.0
-    return fall(above, dot(added_scaled(v, tau, g), normal), dot(g, normal))
+    return fall(above, dot(added_scaled(one.v, tau, g), normal), dot(g, normal))
 
 
 @scalar
@@ -119,14 +95,12 @@ def fall(gap, v, g):
 
 
 @scalar
-def approach(world, state, i, w, tau):
-    """Gap between sphere i and a wall after a time, how fast it closes, a bound of how much faster
-    it may do so per time, and how long that bound holds."""
-    g, walls = world.gravity, world.walls
-    r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
-    then, radius = state[i, TIME] + tau, state[i, RADIUS]
-    moving = added_scaled(v, tau, g)
-    distance, normal = outward(world, w, fallen(r, tau, v, g))
+def approach(world, one, w, tau):
+    """Gap between a sphere and a wall after a time, its closing speed, a bound of the growth of
+    this speed per time, and how long the bound holds."""
+    g, walls, then, radius = world.gravity, world.walls, one.time + tau, one.radius
+    moving = added_scaled(one.v, tau, g)
+    distance, normal = outward(walls, w, world, fallen(one.r, tau, one.v, g))
     shift, speed, bend = vibration(walls, w, then)
     gap = distance - shift - radius * (1.0 + world.growth * then)
     closing = speed + radius * world.growth - dot(moving, normal)
@@ -134,12 +108,12 @@ def approach(world, state, i, w, tau):
     bend += pull
     if walls[w, KIND] == INSIDE:
         square, size = dot(moving, moving), walls[w, ROUND]
-        if distance > 0.5 * size:  # near the middle a way is a bound, its direction is not
+        if distance > 0.5 * size:  # near the middle, where the normal turns fast: a bound
             closing = math.sqrt(square) + speed + radius * world.growth
-        else:  # for as long as it does not come nearer to the middle than a quarter
+        else:  # until it may be within a quarter of the radius of the middle
             bend += (square + 0.5 * pull * size) / (0.25 * size)
             longest = parabola(0.25 * size, math.sqrt(square), pull)
-    elif walls[w, KIND] == OUTSIDE:  # until it may have come to another image of the wall
+    elif walls[w, KIND] == OUTSIDE:  # until it may be near another image of the wall
         between = next_image(world, w) - 2.0 * (walls[w, ROUND] + radius)
         longest = parabola(max(gap, between - gap), math.sqrt(dot(moving, moving)), pull)
     return gap, closing, bend, longest

@@ -1,4 +1,4 @@
-"""What puts energy into hard spheres, or takes it out. A new one is a file here."""
+"""Sources and sinks of energy for hard spheres. A new one is a file here."""
 
 from mesokit.case.registry import parts_in
 from mesokit.method.spheres.hard.heating.protocol import Heating

@@ -7,7 +7,7 @@ import numpy as np
 
 from mesokit.case.component import component, param, tag
 from mesokit.method.spheres.common.draws import normal_rows, uniform_rows
-from mesokit.method.spheres.hard.heating.protocol import Heating, Motion
+from mesokit.method.spheres.hard.heating.protocol import Heated, Heating
 
 CHANCE, VELOCITY = 81, 82  # purposes of the random numbers, above METHOD
 
@@ -22,13 +22,12 @@ class Andersen(Heating):
 
     @property
     def bath_kT(self) -> float:
-        """Thermal energy of the bath."""
         return self.kT
 
-    def act(self, motion: Motion, interval: float) -> None:
-        n, d = motion.velocities.shape
-        chance = uniform_rows(motion.seed, motion.turn, CHANCE, n)
+    def act(self, heated: Heated, interval: float) -> None:
+        n, d = heated.velocities.shape
+        chance = uniform_rows(heated.seed, heated.turn, CHANCE, n)
         chosen = chance < -math.expm1(-self.rate * interval)
-        fresh = normal_rows(motion.seed, motion.turn, VELOCITY, n, d)
-        fresh *= np.sqrt(self.kT / motion.masses)[:, None]
-        motion.velocities[chosen] = fresh[chosen]
+        fresh = normal_rows(heated.seed, heated.turn, VELOCITY, n, d)
+        fresh *= np.sqrt(self.kT / heated.masses)[:, None]
+        heated.velocities[chosen] = fresh[chosen]

@@ -6,7 +6,7 @@ import numpy as np
 
 from mesokit.case.component import component, param, tag
 from mesokit.method.spheres.common.draws import normal_rows
-from mesokit.method.spheres.hard.heating.protocol import Heating, Motion
+from mesokit.method.spheres.hard.heating.protocol import Heated, Heating
 
 PURPOSE = 80  # of the random numbers, above METHOD
 
@@ -24,12 +24,11 @@ class Kicks(Heating):
 
     @property
     def white_noise(self) -> bool:
-        """It is: kicks have no memory."""
         return True
 
-    def act(self, motion: Motion, interval: float) -> None:
-        n, d = motion.velocities.shape
-        kicks = normal_rows(motion.seed, motion.turn, PURPOSE, n, d)
-        kicks *= np.sqrt(2 * self.power * interval / (d * motion.masses))[:, None]
-        kicks -= motion.masses @ kicks / motion.masses.sum()
-        motion.velocities[:] += kicks
+    def act(self, heated: Heated, interval: float) -> None:
+        n, d = heated.velocities.shape
+        kicks = normal_rows(heated.seed, heated.turn, PURPOSE, n, d)
+        kicks *= np.sqrt(2 * self.power * interval / (d * heated.masses))[:, None]
+        kicks -= heated.masses @ kicks / heated.masses.sum()
+        heated.velocities[:] += kicks

@@ -1,20 +1,16 @@
-"""What a source of energy is."""
+"""Base of the sources of energy for hard spheres."""
 
 from abc import ABC, abstractmethod
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from mesokit.case.component import component, option
 from mesokit.case.registry import family
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
 
-
-class Motion(NamedTuple):
-    """velocities (n, d), to be changed; masses (n,); all by particle number; the seed of the run,
-    and how many times it has been done before."""
+class Heated(NamedTuple):
+    """velocities (n, d), to be changed, and masses (n,), by particle number; seed of the run;
+    turn: number of earlier calls."""
 
     velocities: Array
     masses: Array
@@ -47,5 +43,5 @@ class Heating(ABC):
         return False
 
     @abstractmethod
-    def act(self, motion: Motion, interval: float) -> None:
-        """Change the velocities, after so much time."""
+    def act(self, heated: Heated, interval: float) -> None:
+        """Change the velocities of `heated` in place; `interval`: time since the last call."""

@@ -1,4 +1,8 @@
-"""The functions that a law must have: forces on spheres, their quanta, and readings of a sphere."""
+"""The functions of a law of forces on spheres. Its parameters have two fields besides.
+
+quantum: the force that counts as one; ahead: the distance beyond the reach at which a pair counts
+as near.
+"""
 
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import share
@@ -20,18 +24,8 @@ def act(law, mine, time, step, world, noted, room):
 
 
 @generic
-def quantum(law):
-    """The force that counts as one."""
-
-
-@generic
 def turns(law):
     """Whether the law makes spheres turn, as a literal."""
-
-
-@generic
-def ahead(law):
-    """Distance beyond the reach at which a pair already counts as near."""
 
 
 @generic

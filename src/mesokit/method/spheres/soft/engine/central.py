@@ -1,14 +1,14 @@
 """Forces along the line between two centres, by a potential of mesokit: one loop over a list.
 
-It has no branches, so that it becomes a loop over vectors of neighbours. Terms are rounded to whole
-quanta before they are added up: sums are exact, whatever the order of a list and its length.
+The loop has no branches, so the compiler makes vectors of neighbours. Terms are rounded to whole
+quanta, so their sums are exact, whatever the order and the length of a list.
 """
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.spheres.soft.engine.acting import act, ahead, measure, quantum, turns
+from mesokit.method.spheres.soft.engine.acting import act, measure, turns
 from mesokit.method.spheres.soft.engine.geometry import from_to, from_wall, reach, row
 from mesokit.method.spheres.soft.engine.groups import ENERGY, NEAREST, VIRIAL
 from mesokit.method.spheres.soft.engine.taken import take
@@ -21,35 +21,23 @@ FAR = np.int64(0x7FF0000000000000)  # bits of infinity: those of positive number
 
 
 class Central(NamedTuple):
-    """A potential, the force that counts as one, and its inverse."""
+    """A potential, the force that counts as one, and its inverse; ahead: see `acting`."""
 
     potential: Any
     quantum: float
     scale: float
+    ahead: float = 0.0
 
 
-@quantum.register(Central)
-def _(law):
-    return law.quantum
-
-
-@ahead.register(Central)
-def _(law):
-    return 0.0
-
-
-@turns.register(Central)
-def _(law):
-    return False
+turns.register(Central)(lambda law: False)
 
 
 @act.register(Central)
 def _(law, mine, time, step, world, noted, room):
     low = FAR
     for i in range(mine[0], mine[1]):
-        low = min(
-            low, forces_from_list(law, i, world), forces_from_walls(law, i, time, world, room)
-        )
+        low = min(low, forces_from_list(law, i, world))
+        low = min(low, forces_from_walls(law, i, time, world, room))
     noted[NEAREST] = min(noted[NEAREST], low)
 
 
@@ -59,8 +47,8 @@ def forces_from_list(law, i, world):
     bodies, box, lists = world.bodies, world.box, world.lists
     r = row(bodies.place, i)
     a, b, c, low = np.int64(0), np.int64(0), np.int64(0), FAR
-    # Each sphere adds up all its neighbours itself, both ways of a pair: no thread writes to
-    # spheres of another. Terms are whole quanta, so neither the order nor the length of a list
+    # Forces at t + dt. Each pair is computed twice, once for each sphere, so that no thread writes
+    # to spheres of another. Terms are whole quanta, so neither the order nor the length of a list
     # matters. The list is filled up with the sphere itself, at distance 0, which adds nothing.
     for s in range(lists.count[i]):
         dx, dy, dz = from_to(box, bodies.place, lists.near[i, s], r)
@@ -69,13 +57,10 @@ def forces_from_list(law, i, world):
         a += fixed(force_over_r * dx, law.scale)
         b += fixed(force_over_r * dy, law.scale)
         c += fixed(force_over_r * dz, law.scale)
-        low = min(low, apart(square))
+        low = min(low, bits(square) if square > 0.0 else FAR)
     rounders = np.int64(lists.count[i]) * np.int64(ROUNDER_BITS)
-    bodies.force[i, 0], bodies.force[i, 1], bodies.force[i, 2] = (
-        a - rounders,
-        b - rounders,
-        c - rounders,
-    )
+    total = a - rounders, b - rounders, c - rounders
+    bodies.force[i, 0], bodies.force[i, 1], bodies.force[i, 2] = total
     return low
 
 
@@ -89,22 +74,12 @@ def forces_from_walls(law, i, time, world, room):
         if distance < 2.0 * reach(bodies, i):
             _, force_over_r = central(law.potential, distance * distance)
             low = min(low, bits(distance * distance) if distance > 0.0 else np.int64(0))
-            force = scaled(force_over_r * distance, out)
-            counts = (
-                quanta(force[0], law.scale),
-                quanta(force[1], law.scale),
-                quanta(force[2], law.scale),
-            )
+            f, scale = scaled(force_over_r * distance, out), law.scale
+            counts = quanta(f[0], scale), quanta(f[1], scale), quanta(f[2], scale)
             for k in range(3):
                 bodies.force[i, k] += counts[k]
             take(room.taken, w, counts)
     return low
-
-
-@scalar
-def apart(square):
-    """Bits of a squared distance; of none, with which lists are filled up, those of infinity."""
-    return bits(square) if square > 0.0 else FAR
 
 
 @measure.register(Central)

@@ -1,20 +1,10 @@
 """Distances of spheres from one another and from walls."""
 
-import math
-
 from mesokit.loops.neighbours import nearest_image
-from mesokit.method.spheres.common.wall.rows import (
-    AXIS,
-    KIND,
-    MOVES,
-    PLACE,
-    PLANE,
-    ROUND,
-    vibration,
-)
+from mesokit.method.spheres.common.walls import KIND, MOVES, PLANE, entries, outward, vibration
 from mesokit.method.spheres.soft.engine.groups import REACH
 from mesokit.scalar.jit import scalar
-from mesokit.scalar.vector import added_scaled, dot, scaled
+from mesokit.scalar.vector import added_scaled
 
 
 @scalar
@@ -30,24 +20,14 @@ def from_to(box, place, j, r):
 
 
 @scalar
-def three(rows, w, column):
-    """Three numbers of a wall, from a column on."""
-    return rows[w, column], rows[w, column + 1], rows[w, column + 2]
-
-
-@scalar
 def from_wall(rows, w, box, r, time):
     """Distance of a place from a wall, the normal out of it, and the velocity of its surface."""
-    separation, axis = added_scaled(r, -1.0, three(rows, w, PLACE)), three(rows, w, AXIS)
-    moves = three(rows, w, MOVES)
+    distance, normal = outward(rows, w, box, r)
+    moves = entries(rows, w, MOVES, r)
     if rows[w, KIND] == PLANE:
         shift, speed, _ = vibration(rows, w, time)
-        return dot(separation, axis) - shift, axis, added_scaled(moves, speed, axis)
-    separation = nearest_image(box, separation)
-    across = added_scaled(separation, -dot(separation, axis), axis)
-    length = math.sqrt(dot(across, across))
-    normal = scaled(rows[w, KIND] / length, across) if length > 0.0 else axis
-    return rows[w, KIND] * (length - rows[w, ROUND]), normal, moves
+        return distance - shift, normal, added_scaled(moves, speed, normal)
+    return distance, normal, moves
 
 
 @scalar

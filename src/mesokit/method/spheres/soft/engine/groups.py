@@ -1,13 +1,13 @@
 """The memory of the loops of soft spheres, by name.
 
-A row of four numbers is one half of a cache line: what a neighbour needs comes at once.
+A row of four numbers is one half of a cache line, so that all data of a neighbour arrive at once.
 """
 
 from typing import Any, NamedTuple
 
 REACH = 3  # column of `place`: how far a sphere reaches, a radius or half of a cut-off
 INVERSE = 3  # column of `velocity` and `spin`: the inverse of mass and of moment of inertia
-FARTHEST, NEAREST, LARGEST, DONE, PENDING = range(5)  # columns of what threads note
+FARTHEST, NEAREST, LARGEST, DONE, PENDING = range(5)  # columns of `noted` of a thread
 ENERGY, VIRIAL, TOUCHING, READINGS = 0, 1, 7, 8  # columns of the readings of a sphere
 
 
@@ -15,8 +15,9 @@ class Bodies(NamedTuple):
     """The spheres in the order of memory.
 
     place (n, 4): coordinates in the box and reach; velocity (n, 4): and inverse mass; seen (n, 4):
-    velocity that dashpots see; spin (n, 4): angular velocity and inverse moment of inertia;
-    force, torque (n, 3): in whole quanta; images (n, 3): boxes away; number (n,): of the particle.
+    velocity for dashpots along the normal; spin (n, 4): angular velocity and inverse moment of
+    inertia; force, torque (n, 3): in whole quanta; images (n, 3): boxes away; number (n,): of the
+    particle.
     """
 
     place: Any
@@ -42,7 +43,7 @@ class Lists(NamedTuple):
     skin: how far lists go beyond the reach; halves: whether laws take each pair once; count (n,)
     and near (n, most): the lists, filled up to whole groups of eight with the sphere itself; own
     (n,): how many, from the front, this sphere finds, where each pair is taken once; begin (n,):
-    its first contact, and springs (contacts, width): what they remember; made_at (n, 4): where the
+    its first contact, and springs (contacts, width); made_at (n, 4): where the
     spheres were.
     """
 
@@ -57,8 +58,8 @@ class Lists(NamedTuple):
 
 
 class Walls(NamedTuple):
-    """rows (walls, 14): see `spheres.wall.rows`; own (walls, 2): damping ratio and friction of
-    each; springs (n * walls, width): what contacts remember; solid: the others, see `solid`."""
+    """rows (walls, 14): see `common.walls`; own (walls, 2): damping ratio and friction of
+    each; springs (n * walls, width) of contacts; solid: walls of other shapes, see `solid`."""
 
     rows: Any
     own: Any

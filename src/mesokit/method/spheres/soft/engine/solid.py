@@ -1,8 +1,7 @@
 """Spheres at walls of any shape, by the distance of their centres.
 
-A sphere touches the nearest term of a solid and, in a corner, two others whose surfaces face other
-ways. Between two that face nearly the same way, as where one wall goes on into its periodic image,
-the nearer one acts alone.
+A sphere touches the nearest term of a solid and, in a corner, two others with other normals. Of two
+terms with nearly the same normal, such as a wall and its periodic image, the nearer one acts alone.
 """
 
 from typing import NamedTuple
@@ -11,7 +10,6 @@ import numpy as np
 
 from mesokit.geometry.primitive import KINDS as NUMBER
 from mesokit.geometry.solids.bodies import (
-    BODY,
     KINDS,
     NEAR,
     NO_TERM,
@@ -19,7 +17,6 @@ from mesokit.geometry.solids.bodies import (
     home_cell,
     part_clearance,
     part_normal,
-    surface_velocity,
     term_clearance,
 )
 from mesokit.method.spheres.soft.engine.contact.remembered import NO_SPRINGS, keep
@@ -28,8 +25,8 @@ from mesokit.scalar.pointer import whole, word
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 MOST = 3  # surfaces that a sphere touches at once
-ALIKE = 0.9  # cosine of the angle between two normals that face nearly the same way
-BENT = NUMBER["wave"]  # primitives from here on know a bound of the distance alone
+ALIKE = 0.9  # cosine of the angle between two normals that are nearly the same
+BENT = NUMBER["wave"]  # primitives from here on give a bound of the distance alone
 FEET = 6  # steps to the nearest place of these
 NEARER = 40  # steps of a ray to their surface
 
@@ -44,7 +41,7 @@ class Place(NamedTuple):
 
 @elementwise
 def shortened(r, pattern):
-    """As many numbers of r as there are axes."""
+    """The components of r along the axes of the box."""
     return "r[{k}]"
 
 
@@ -58,7 +55,7 @@ def lengthened(x):
 
 @seldom
 def nearest_place(tables, x, within, one, other):
-    """The nearest term whose surface faces another way than these two normals do."""
+    """The nearest term whose normal differs from these two: distance, normal and term."""
     least, normal, term = within, scaled(0.0, x), NO_TERM
     cell = home_cell(tables, x)
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
@@ -73,15 +70,13 @@ def nearest_place(tables, x, within, one, other):
 
 @seldom
 def part_place(tables, part, x, bound):
-    """Distance of x from a part, and the normal there.
-
-    Of bent surfaces the distance is that of the nearest place: where a ray from x along the normal
-    of the last foot meets the surface, again and again.
-    """
+    """Distance of x from a part, and the normal there."""
     n = part_normal(tables, part, x)
     if whole(word(tables, KINDS), part) < BENT:
         return bound, n
     distance = bound
+    # The nearest place of a bent surface: a ray from x along the normal meets the surface at a
+    # foot, the normal there gives the next ray, and so on.
     for _ in range(FEET):
         distance = 0.0
         for _ in range(NEARER):
@@ -95,33 +90,16 @@ def part_place(tables, part, x, bound):
 
 @scalar
 def place_at_solid(solid, r, within, one, other):
-    """The nearest term whose surface faces another way than these two normals do."""
-    x = shortened(r, solid.pattern)
-    distance, normal, term = nearest_place(
-        solid.bodies.tables,
-        x,
-        within,
-        shortened(one, solid.pattern),
-        shortened(other, solid.pattern),
-    )
+    """The nearest term as `nearest_place` finds it, with vectors of three components."""
+    tables, axes = solid.bodies.tables, solid.pattern
+    x, a, b = shortened(r, axes), shortened(one, axes), shortened(other, axes)
+    distance, normal, term = nearest_place(tables, x, within, a, b)
     return Place(distance, lengthened(normal), term)
 
 
 @scalar
-def solid_moves(solid, term, r):
-    """Velocity of the surface of a term at r."""
-    return lengthened(surface_velocity(solid.bodies.tables, term, shortened(r, solid.pattern)))
-
-
-@scalar
-def body_of(solid, term):
-    """The body that a term belongs to."""
-    return whole(word(solid.bodies.tables, BODY), term)
-
-
-@scalar
 def contact_with(solid, i, term):
-    """Which contact sphere i has with a term: one that is free if it is new."""
+    """Number of the contact of sphere i with a term; a free one if it is new."""
     free = 0
     for s in range(MOST):
         if solid.terms[i, s] == term:
@@ -135,7 +113,7 @@ def contact_with(solid, i, term):
 
 @scalar
 def forget_others(solid, i, one, two, three):
-    """Free what sphere i remembers of terms other than these."""
+    """Free the contacts of sphere i with terms other than these."""
     for s in range(MOST):
         term = solid.terms[i, s]
         if term != one and term != two and term != three:

@@ -1,9 +1,9 @@
 """Velocity Verlet, by all threads, until the lists are outdated.
 
-Half a kick and the drift, the forces at the new places, half a kick. Dashpots along
-the normal see the velocities at the end of the step, others those of the half step. Forces are
-whole numbers of quanta, each of which a sphere adds up for itself: the sum has no order. With a
-bath velocities are drawn between two halves of the drift (BAOAB; Leimkuhler and Matthews 2013).
+Half a kick and the drift, the forces at the new places, half a kick. Dashpots along the normal
+take the velocities at the end of the step, others those of the half step. Forces are whole numbers
+of quanta, so that their sums have no order. With a bath, velocities are drawn between two halves of
+the drift (BAOAB; Leimkuhler and Matthews 2013).
 """
 
 import math
@@ -14,8 +14,8 @@ from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import share
 from mesokit.loops.neighbours import nearest_image, outdated
 from mesokit.loops.threads import barrier
-from mesokit.method.spheres.soft.engine.acting import act, ahead, quantum, turns
-from mesokit.method.spheres.soft.engine.contact.room import Room
+from mesokit.method.spheres.soft.engine.acting import act, turns
+from mesokit.method.spheres.soft.engine.contact.room import room_of_thread
 from mesokit.method.spheres.soft.engine.geometry import row
 from mesokit.method.spheres.soft.engine.groups import DONE, FARTHEST, INVERSE, PENDING
 from mesokit.scalar.jit import scalar
@@ -27,22 +27,19 @@ BATH, BATH_OF_SPINS = METHOD + np.uint64(1), METHOD + np.uint64(2)
 
 @kernel
 def advance(worker, counter, steps, law, motion, world, noted, rooms):
-    """So many steps, or fewer where lists must be made anew.
+    """Do `steps` steps, or fewer where lists must be made anew.
 
-    `noted` says whether forces are due first, and then how many steps are done and whether forces
-    are due, with new lists.
+    `noted` (threads, 8) holds, before and after, whether forces at the new places are due first,
+    and after, the number of steps done.
     """
     first, last = share(len(world.bodies.number), worker.thread, worker.threads)
     mine = noted[worker.thread]
-    thread = worker.thread
-    room = Room(
-        rooms.numbers[thread], rooms.counts[thread], rooms.pairs[thread], rooms.taken[thread]
-    )
+    room = room_of_thread(rooms, worker.thread)
     done, pending = 0, mine[PENDING] != 0.0
     # Half a kick (v: t -> t + dt/2), the drift (r: t -> t + dt), forces at t + dt, half a kick.
     # Each thread writes its own spheres; the barriers are before and after forces, which read those
-    # of others. All threads see the same longest displacement, so all leave for new lists together.
-    # Then forces are pending: the call with new lists begins with them.
+    # of others. All threads find the same longest displacement, so they return for new lists
+    # together. Then forces are pending: the call with new lists begins with them.
     while done < steps:
         now = Counter(counter.seed, counter.step + np.uint64(done))
         if not pending:
@@ -54,7 +51,7 @@ def advance(worker, counter, steps, law, motion, world, noted, rooms):
                 farthest = max(farthest, moved(world.bodies, world.box, world.lists, i))
             mine[FARTHEST] = farthest
             barrier(worker)
-            skin = world.lists.skin - ahead(law)
+            skin = world.lists.skin - law.ahead
             if outdated(noted, FARTHEST, worker.threads, 0.0, skin):
                 pending = True
                 break
@@ -71,22 +68,19 @@ def advance(worker, counter, steps, law, motion, world, noted, rooms):
 
 @kernel
 def find_forces(worker, time, law, world, noted, rooms):
-    """The forces on spheres where they start from. No contact grows meanwhile."""
+    """The forces on spheres at the start; springs of contacts do not change."""
     first, last = share(len(world.bodies.number), worker.thread, worker.threads)
     clear(law, world.bodies, first, last)
     for i in range(len(world.bodies.number)):
         for k in range(3):
             world.bodies.seen[i, k] = world.bodies.velocity[i, k]
-    thread = worker.thread
-    room = Room(
-        rooms.numbers[thread], rooms.counts[thread], rooms.pairs[thread], rooms.taken[thread]
-    )
+    room = room_of_thread(rooms, worker.thread)
     act(law, (first, last), time, 0.0, world, noted[worker.thread], room)
 
 
 @scalar
 def clear(law, bodies, first, last):
-    """No forces yet, for laws that add to them from both sides of a contact."""
+    """Set forces to zero, for laws that add to them from both sides of a contact."""
     if turns(law):
         bodies.force[first:last] = 0
         bodies.torque[first:last] = 0
@@ -94,23 +88,23 @@ def clear(law, bodies, first, last):
 
 @scalar
 def kick(law, motion, bodies, i):
-    """Half a step of forces and torques."""
+    """Change velocity and angular velocity by half a step of forces and torques."""
     half = 0.5 * motion.step
-    per_mass = bodies.velocity[i, INVERSE] * quantum(law)
+    per_mass = bodies.velocity[i, INVERSE] * law.quantum
     for k in range(3):
         acceleration = float(bodies.force[i, k]) * per_mass + motion.gravity[k]
         bodies.velocity[i, k] += half * acceleration
     if turns(law):
-        per_inertia = bodies.spin[i, INVERSE] * quantum(law)
+        per_inertia = bodies.spin[i, INVERSE] * law.quantum
         for k in range(3):
             bodies.spin[i, k] += half * (float(bodies.torque[i, k]) * per_inertia)
 
 
 @scalar
 def foresee(law, motion, bodies, i):
-    """The velocity at the end of the step, if forces are then what they were at its start."""
+    """Estimate the velocity at the end of the step, with the forces of its start."""
     if turns(law):
-        per_mass = bodies.velocity[i, INVERSE] * quantum(law)
+        per_mass = bodies.velocity[i, INVERSE] * law.quantum
         for k in range(3):
             acceleration = float(bodies.force[i, k]) * per_mass + motion.gravity[k]
             bodies.seen[i, k] = bodies.velocity[i, k] + 0.5 * motion.step * acceleration
@@ -118,7 +112,7 @@ def foresee(law, motion, bodies, i):
 
 @scalar
 def drift(motion, counter, bodies, box, i):
-    """A step of flight, with the bath in the middle of it."""
+    """Move sphere i by a step, with the bath in the middle of it."""
     if motion.decay == 1.0:
         for k in range(3):
             fly(bodies, box, i, k, motion.step)
@@ -152,7 +146,7 @@ def bathe(motion, counter, bodies, i):
 
 @scalar
 def fly(bodies, box, i, k, time):
-    """Along one axis, and back into the box."""
+    """Move sphere i along axis k, and back into the box."""
     x = bodies.place[i, k] + time * bodies.velocity[i, k]
     if box.inverse[k] != 0.0:
         if x < 0.0:
@@ -167,7 +161,7 @@ def fly(bodies, box, i, k, time):
 
 @scalar
 def moved(bodies, box, lists, i):
-    """Square of the way since the lists were made; infinite for what is no number any more."""
+    """Square of the displacement since lists were made; infinite if it is not a number."""
     gone = added_scaled(row(bodies.place, i), -1.0, row(lists.made_at, i))
     x, y, z = nearest_image(box, gone)
     square = x * x + y * y + z * z

@@ -1,4 +1,4 @@
-"""Soft spheres in memory: what is laid out how, sorted when, and read by particle number."""
+"""Soft spheres in memory: sorting, neighbour lists, steps and reading by particle number."""
 
 import math
 from typing import Any, NamedTuple
@@ -13,12 +13,11 @@ from mesokit.kernels.packing import Packing
 from mesokit.loops.layout import by_number
 from mesokit.loops.neighbours import GAP, inverse_lengths
 from mesokit.loops.threads import Threads
-from mesokit.method.spheres.common.wall.rows import AMPLITUDE, AXIS, KIND, PLACE, PLANE
+from mesokit.method.spheres.common.walls import AMPLITUDE, AXIS, KIND, PLACE, PLANE
 from mesokit.method.spheres.soft.engine import groups
 from mesokit.method.spheres.soft.engine.acting import measure_all
-from mesokit.method.spheres.soft.engine.contact.remembered import carry_springs
+from mesokit.method.spheres.soft.engine.contact.remembered import carry_springs, pairs_of, remember
 from mesokit.method.spheres.soft.engine.contact.room import rooms
-from mesokit.method.spheres.soft.engine.contact.sums import pairs_of, remember
 from mesokit.method.spheres.soft.engine.groups import (
     Bodies,
     Box,
@@ -33,15 +32,16 @@ from mesokit.method.spheres.soft.engine.solid import MOST
 from mesokit.method.spheres.soft.engine.step import advance, find_forces
 from mesokit.method.spheres.soft.engine.taken import all_taken, in_numbers
 from mesokit.scalar.random import Counter
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
 CELLS = 4_000_000  # at most
-ROUNDING = 1 + 1e-9  # what cells are larger than they need
+ROUNDING = 1 + 1e-9  # cells are larger by this than they need to be
+KEPT = ("place", "velocity", "spin", "force", "torque", "images")  # arrays in checkpoints
 
 
 class Grid(NamedTuple):
-    """Cells along each axis, their number per length, how many of them on both sides are looked
-    through, and the square of the longest distance that lists have."""
+    """Cells along each axis, their number per length, the number of cells on both sides that a list
+    searches, and the square of the longest distance on a list."""
 
     cells: tuple[int, int, int]
     inverse: tuple[float, float, float]
@@ -50,8 +50,8 @@ class Grid(NamedTuple):
 
 
 class Others(NamedTuple):
-    """Walls of any shape: what compiled code takes, a place, own (bodies, 2), see `groups.Solid`;
-    and what keeps their tables in memory."""
+    """Walls of any shape: bodies, pattern and own as of `groups.Solid`; kept: the owner of the
+    memory of their tables."""
 
     bodies: Any
     pattern: tuple[float, ...]
@@ -59,13 +59,13 @@ class Others(NamedTuple):
     kept: Any
 
 
-class Given(NamedTuple):
-    """What does not change.
+class SoftSetup(NamedTuple):
+    """Parameters of a system of soft spheres.
 
     size of the box and closed axes; reach, masses, inertia (n,); law of the forces, see `acting`;
-    halves: whether each pair is taken once; width: numbers that a contact remembers; nearest: no
-    two come nearer, largest: no force exceeds it; motion; walls: rows and own, see `Walls`; seed;
-    skin; others: walls of any shape; fastest: the speed beyond which steps do not follow contacts.
+    halves: whether each pair is computed once; width: numbers in the springs of a contact; nearest:
+    least allowed distance of two centres; motion; rows and own of walls, see `Walls`; seed; skin of
+    lists; others: walls of any shape; fastest: largest speed at which steps resolve contacts.
     """
 
     size: tuple[float, ...]
@@ -86,56 +86,42 @@ class Given(NamedTuple):
     fastest: float = math.inf
 
 
-class System:
-    """The spheres, their lists, and the threads that move them."""
+class SoftSystem:
+    """Soft spheres in a box, their neighbour lists, and the threads that move them."""
 
-    def __init__(self, given: Given, threads: int) -> None:
+    def __init__(self, given: SoftSetup, threads: int) -> None:
         n, self.given, self.worker = len(given.reach), given, Threads(threads)
-        self.n, self.dimension = n, len(given.size)
-        self.box, self._packing = _box(given), Packing()
+        self.n, self.dimension, self._packing = n, len(given.size), Packing()
+        self.box = _box(given)
         self.grid = _grid(given, self.box)
-        self.bodies = _bodies(n)
-        self.spare = _bodies(n)
-        self.walls = self._no_contacts()
-        self.lists = self._lists(GROUP)
-        self.old = self._lists(GROUP)
+        self.bodies, self.spare = _bodies(n), _bodies(n)
+        self.walls, self.lists, self.old = self._walls(), self._lists(GROUP), self._lists(GROUP)
         self.cell, self.order = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
         self.scratch = np.zeros((threads, n + GROUP), np.int64)
         self.noted = np.zeros((threads, GAP))
         surfaces = len(given.rows) + (0 if given.others is None else len(given.others.own))
         self.rooms = rooms(threads, surfaces)
-        self.noted_forces()
+        self.noted.view(np.int64)[:, groups.NEAREST] = np.float64(np.inf).view(np.int64)
         self.worker.compile_ahead(advance, *self._arguments(0, 0))
 
-    def noted_forces(self) -> None:
-        """Forget how near spheres came."""
-        self.noted.view(np.int64)[:, groups.NEAREST] = np.float64(np.inf).view(np.int64)
-        self.noted[:, groups.LARGEST] = 0.0
-
-    def _walls(self, springs: Array, solid_terms: Any, solid_springs: Array) -> Walls:
-        given = self.given
+    def _walls(self) -> Walls:
+        """Walls without contacts."""
+        n, given = self.n, self.given
         solid: Any = Nothing()
         if (others := given.others) is not None:
-            solid = Solid(others.bodies, others.pattern, others.own, solid_terms, solid_springs)
-        return Walls(given.rows, given.own, springs, solid)
+            terms, springs = np.full((n, MOST), NO_TERM, np.int32), self._springs(n * MOST)
+            solid = Solid(others.bodies, others.pattern, others.own, terms, springs)
+        return Walls(given.rows, given.own, self._springs(n * len(given.rows)), solid)
 
-    def _no_contacts(self) -> Walls:
-        n, width = self.n, self.given.width
-        terms, solid_springs = np.full((n, MOST), NO_TERM, np.int32), np.zeros((n * MOST, width))
-        return self._walls(np.zeros((n * len(self.given.rows), width)), terms, solid_springs)
+    def _springs(self, contacts: int) -> Array:
+        return np.zeros((contacts, self.given.width))
 
     def _lists(self, most: int) -> Lists:
-        n, width = self.n, self.given.width
-        count, own, near = (
-            np.zeros(n, np.int64),
-            np.zeros(n, np.int64),
-            np.zeros((n, most), np.int32),
-        )
-        begin, springs = np.zeros(n, np.int64), np.zeros((n * width, width))
-        return Lists(
-            self.given.skin, self.given.halves, count, own, near, begin, springs, np.zeros((n, 4))
-        )
+        n, given = self.n, self.given
+        count, own, begin = (np.zeros(n, np.int64) for _ in range(3))
+        near, springs = np.zeros((n, most), np.int32), np.zeros((n * given.width, given.width))
+        return Lists(given.skin, given.halves, count, own, near, begin, springs, np.zeros((n, 4)))
 
     # --- start and steps --------------------------------------------------------------------------
 
@@ -152,46 +138,43 @@ class System:
         bodies.place[:, :d], bodies.place[:, groups.REACH] = inside, given.reach
         bodies.images[:, :d] = images
         bodies.velocity[:, :d], bodies.velocity[:, groups.INVERSE] = velocities, 1 / given.masses
-        self._set_spins(spins)
+        bodies.spin[:, 2 if d == 2 else slice(3)] = spins
         bodies.spin[:, groups.INVERSE] = 1 / given.inertia
-        self.walls = self._no_contacts()
-        self.lists = self._lists(GROUP)
+        self.walls, self.lists = self._walls(), self._lists(GROUP)
         self.renew()
-
-    def _set_spins(self, spins: Array) -> None:
-        if self.dimension == 2:
-            self.bodies.spin[:, 2] = spins
-        else:
-            self.bodies.spin[:, :3] = spins
 
     @property
     def world(self) -> World:
-        """What the loops work on, as it lies now."""
+        """The arrays of the loops in the present order of memory."""
         return World(self.bodies, self.box, self.lists, self.walls)
 
     def find_forces(self, time: float) -> None:
-        """The forces at the start."""
+        """Compute the forces at the start."""
         self.worker.run(find_forces, time, self.given.law, self.world, self.noted, self.rooms)
         self.forget_taken()
-        self._look()
+        self._check_forces()
 
     def forget_taken(self) -> None:
-        """Surfaces have taken nothing yet."""
+        """Set the momentum taken by surfaces to zero."""
         self.rooms.taken[:] = 0
 
     def taken(self) -> Array:
         """Forces on surfaces, (surfaces, 3), summed over steps: rows, then bodies of others."""
-        found: Array = in_numbers(all_taken(self.rooms.taken)) * self.given.law.quantum
-        return found
+        return np.asarray(in_numbers(all_taken(self.rooms.taken)) * self.given.law.quantum)
 
     def run(self, step: int, steps: int) -> None:
-        """So many steps from a step on. Raises RunError where forces are beyond all bounds."""
+        """Do `steps` steps after step number `step`; 0 only loads the compiled loops.
+
+        Raises RunError where forces are beyond all bounds.
+        """
         done = 0
+        # The loops return early with forces pending when lists are outdated; then lists are made
+        # at the places of t + dt, and the next call begins with the forces there.
         self.noted[:, groups.PENDING] = 0.0
         while done < steps or steps == 0:
             self.worker.run(advance, *self._arguments(step + done, steps - done))
             done += int(self.noted[0, groups.DONE])
-            self._look()
+            self._check_forces()
             if self.noted[0, groups.PENDING]:
                 self.renew()
             if steps == 0:
@@ -202,15 +185,14 @@ class System:
         law, motion, world, rooms = self._packing(given.law, given.motion, self.world, self.rooms)
         return counter, steps, law, motion, world, self.noted, rooms
 
-    def _look(self) -> None:
-        law, given = self.noted, self.given
-        nearest = np.sqrt(law.view(np.int64)[:, groups.NEAREST].view(np.float64).min())
-        if nearest < given.nearest:
+    def _check_forces(self) -> None:
+        nearest = np.sqrt(self.noted.view(np.int64)[:, groups.NEAREST].view(np.float64).min())
+        if nearest < self.given.nearest:
             raise RunError(
                 f"two spheres, or a sphere and a wall, are {nearest:.3g} apart: the force is "
                 "beyond all bounds; expected a shorter timestep, or a start without overlaps"
             )
-        if law[:, groups.LARGEST].max() > 2.0**61:
+        if self.noted[:, groups.LARGEST].max() > 2.0**61:
             raise RunError(
                 "a force of a contact is beyond all bounds; expected a shorter timestep, or a "
                 "start without overlaps"
@@ -235,16 +217,8 @@ class System:
         columns = np.zeros((4, self.n + GROUP))
         columns[:, : self.n] = self.bodies.place.T
         while True:
-            self.worker.run(
-                make_lists,
-                self.grid,
-                self.begins,
-                columns,
-                self.bodies,
-                self.box,
-                self.lists,
-                self.scratch,
-            )
+            memory = self.bodies, self.box, self.lists, self.scratch
+            self.worker.run(make_lists, self.grid, self.begins, columns, *memory)
             longest = int(self.lists.count.max())
             if longest < self.lists.near.shape[1]:  # one place is written beyond the end
                 break
@@ -253,7 +227,7 @@ class System:
             self._carry_springs()
 
     def _require_followed(self) -> None:
-        """Raise RunError for a sphere so fast that a contact with one at rest has few steps."""
+        """Raise RunError for a sphere so fast that its contact with one at rest has few steps."""
         v, given = self.bodies.velocity[:, :3], self.given
         if not len(given.rows) and given.others is None:
             v = v - v.mean(axis=0)
@@ -288,18 +262,19 @@ class System:
         self.worker.run(carry_springs, self.order, self.old, self.lists)
 
     def _sort_walls(self) -> None:
-        """Contacts with walls, in the order of memory."""
         walls, order = self.walls, self.order
-        springs = self._of_each(walls.springs)[order].reshape(walls.springs.shape)
+
+        def ordered(springs: Array) -> Array:
+            return self._of_each(springs)[order].reshape(springs.shape)
+
         if self.given.others is not None:
             solid = walls.solid
-            beside = self._of_each(solid.springs)[order].reshape(solid.springs.shape)
-            self.walls = self._walls(springs, solid.terms[order], beside)
-        elif walls.springs.size:
-            self.walls = walls._replace(springs=springs)
+            terms, beside = solid.terms[order], ordered(solid.springs)
+            walls = walls._replace(solid=solid._replace(terms=terms, springs=beside))
+        self.walls = walls._replace(springs=ordered(walls.springs))
 
     def _of_each(self, springs: Array) -> Array:
-        """What contacts with walls remember, sphere by sphere."""
+        """Springs of contacts with walls, sphere by sphere."""
         return springs.reshape(self.n, len(springs) // self.n, springs.shape[1])
 
     # --- reading ----------------------------------------------------------------------------------
@@ -315,10 +290,9 @@ class System:
         return self.by_number(readings)
 
     def state(self) -> dict[str, NDArray[Any]]:
-        """All that the next step depends on, by particle number."""
-        bodies, found = self.bodies, {}
-        for name in ("place", "velocity", "spin", "force", "torque", "images"):
-            found[name] = self.by_number(getattr(bodies, name)[:, :3])
+        """All arrays that the next step depends on, by particle number."""
+        bodies = self.bodies
+        found = {name: self.by_number(getattr(bodies, name)[:, :3]) for name in KEPT}
         if self.given.width:
             found["pairs"], found["springs"] = pairs_of(self.lists, bodies.number)
             found["wall_springs"] = self.by_number(self._of_each(self.walls.springs))
@@ -330,16 +304,15 @@ class System:
         return found
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
-        """Go on from a state."""
+        """Continue from a state."""
         bodies, given = self.bodies, self.given
         bodies.number[:] = np.arange(self.n)
         bodies.place[:, groups.REACH] = given.reach
         bodies.velocity[:, groups.INVERSE] = 1 / given.masses
         bodies.spin[:, groups.INVERSE] = 1 / given.inertia
-        for name in ("place", "velocity", "spin", "force", "torque", "images"):
+        for name in KEPT:
             getattr(bodies, name)[:, :3] = state[name]
-        self.lists = self._lists(GROUP)
-        self.walls = self._no_contacts()
+        self.walls, self.lists = self._walls(), self._lists(GROUP)
         if given.width:
             self._of_each(self.walls.springs)[:] = state["wall_springs"]
         if given.others is not None:
@@ -353,18 +326,18 @@ class System:
             remember(self.lists, self.bodies.number, state["pairs"], state["springs"])
 
 
-def _box(given: Given) -> Box:
+def _box(given: SoftSetup) -> Box:
     size = [*given.size, 1.0, 1.0][:3]
     shut = [*given.closed, True, True][:3]
     return Box(_three(size), _three(inverse_lengths(size, shut)))
 
 
-def _three(numbers: Any) -> tuple[float, float, float]:
-    x, y, z = (float(number) for number in numbers)
+def _three(numbers: Any, kind: type = float) -> tuple[Any, Any, Any]:
+    x, y, z = (kind(number) for number in numbers)
     return x, y, z
 
 
-def _grid(given: Given, box: Box) -> Grid:
+def _grid(given: SoftSetup, box: Box) -> Grid:
     """Cells of half the length that lists reach, of which five lie along an axis at least; or of
     all of it, three at least; or one."""
     d, reach = len(given.size), 2 * float(given.reach.max()) + given.skin
@@ -376,9 +349,7 @@ def _grid(given: Given, box: Box) -> Grid:
             if number >= 2 * width + 1:
                 cells[k], wide[k] = number, width
     inverse = [number / length for number, length in zip(cells, box.size, strict=True)]
-    a, b, c = cells
-    e, f, g = wide
-    return Grid((a, b, c), _three(inverse), (e, f, g), (reach * ROUNDING) ** 2)
+    return Grid(_three(cells, int), _three(inverse), _three(wide, int), (reach * ROUNDING) ** 2)
 
 
 def _bodies(n: int) -> Bodies:

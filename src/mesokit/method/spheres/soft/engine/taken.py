@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.loops.layout import zeros
 from mesokit.scalar.jit import scalar
 
 LOW, HIGH, WIDTH = 0, 3, 8  # columns of a surface, of which a row is a cache line
@@ -16,15 +15,9 @@ BITS = np.int64(32)
 MASK = np.int64(2**32 - 1)
 
 
-def nothing_taken(threads: int, surfaces: int) -> NDArray[np.int64]:
-    """Sums of each thread, (threads, surfaces, 8)."""
-    found: NDArray[np.int64] = zeros((threads, surfaces, WIDTH), np.int64)
-    return found
-
-
 @scalar
 def take(taken, w, counts):
-    """Surface w takes minus the force on a sphere."""
+    """Add minus the force on a sphere, in quanta, to the sums of surface w."""
     for k in range(3):
         low = taken[w, LOW + k] - counts[k]
         taken[w, HIGH + k] += low >> BITS

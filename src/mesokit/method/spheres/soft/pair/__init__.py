@@ -1,4 +1,4 @@
-"""What soft spheres do to one another. A new law of contact is a file here; potentials are those of
+"""Pair laws of soft spheres. A new law of contact is a file here; potentials are in
 `mesokit.potential`."""
 
 from mesokit.case.registry import FAMILIES, parts_in

@@ -1,7 +1,5 @@
 """Elastic spheres, with the damping of viscoelastic ones."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal, NamedTuple
 
@@ -14,6 +12,14 @@ from mesokit.method.spheres.soft.pair.protocol import (
     normal_force,
     rate_of_now,
 )
+
+
+class Hertz(NamedTuple):
+    """Stiffness, damping time and whether it pulls."""
+
+    stiffness: float
+    damping: float
+    pulls: float
 
 
 @component
@@ -41,7 +47,6 @@ class HertzLaw(ContactLaw):
         return Hertz(self.stiffness, self.damping, float(self.pulls))
 
     def largest_force(self, case: Case) -> float:
-        """Force of an overlap of a whole diameter."""
         diameter = max(kind.diameter for kind in case.spheres.kinds)
         return float(self.stiffness * (diameter * case.spheres.scale(case.box)) ** 1.5)
 
@@ -50,7 +55,6 @@ class HertzLaw(ContactLaw):
         return theory.hertz_contact(self.stiffness, mass, speed).time
 
     def overlap_of(self, mass: float, speed: float) -> float:
-        """The largest overlap without damping."""
         return theory.hertz_contact(self.stiffness, mass, speed).overlap
 
     def restitution_of(self, mass: float, speed: float) -> float:
@@ -60,14 +64,6 @@ class HertzLaw(ContactLaw):
             return 1.0
         slow = (self.stiffness / mass) ** 0.4 * speed**0.2
         return max(0.0, 1.0 - 1.15344 * 1.5 * self.damping * slow)
-
-
-class Hertz(NamedTuple):
-    """Stiffness, damping time and whether it pulls."""
-
-    stiffness: float
-    damping: float
-    pulls: float
 
 
 @normal_force.register(Hertz)

@@ -1,7 +1,7 @@
-"""What a pair law answers: a potential of mesokit, or a law of contact, which loses energy.
+"""Base of the pair laws of soft spheres: potentials of mesokit, and laws of contact.
 
-The first argument of the scalar functions is the NamedTuple of parameters that `normal` gives; its
-class picks the implementation.
+The first argument of the scalar functions is the NamedTuple of parameters that `normal` returns;
+its class selects the implementation.
 """
 
 import math
@@ -20,7 +20,7 @@ SOLID_SPHERES = 2 / 7  # tangential over normal stiffness: sliding and pressing 
 @family("pair law of soft spheres", "rule", "mesokit.soft_pair")
 @component
 class PairLaw(ABC):  # noqa: B024  each sort of law has its own questions
-    """What two soft spheres do to one another."""
+    """Force law of two soft spheres."""
 
 
 PairLaw.register(Pair)  # type: ignore[type-abstract]
@@ -28,8 +28,8 @@ PairLaw.register(Pair)  # type: ignore[type-abstract]
 
 @component
 class ContactLaw(PairLaw):
-    """What two spheres do to one another that touch: a force along the normal, which a subclass
-    gives, friction and resistance to rolling (Cundall and Strack 1979; Luding 2008)."""
+    """Force law of two spheres that touch: a force along the normal, which a subclass gives,
+    friction and resistance to rolling (Cundall and Strack 1979; Luding 2008)."""
 
     friction: float = param(
         0.0,
@@ -72,11 +72,11 @@ class ContactLaw(PairLaw):
 
     @abstractmethod
     def largest_force(self, case: Case) -> float:
-        """Force of an overlap of a whole diameter, about: what quanta of force are a part of."""
+        """Force at an overlap of a whole diameter, about; quanta of force are a part of it."""
 
     @abstractmethod
     def contact_time_of(self, mass: float, speed: float) -> float:
-        """How long a collision takes that closes at this speed, of this reduced mass."""
+        """Duration of a collision at this relative speed, of this reduced mass."""
 
     @abstractmethod
     def overlap_of(self, mass: float, speed: float) -> float:
@@ -92,7 +92,7 @@ class ContactLaw(PairLaw):
         return self.restitution_of(1.0, 1.0) == 1.0 and self.friction == 0.0 and self.rolling == 0.0
 
     def width(self, rubs: bool) -> int:
-        """How many numbers a contact remembers; `rubs`: whether walls have their own friction."""
+        """Number of components of springs of a contact; `rubs`: walls have their own friction."""
         if self.rolling > 0:
             return 6
         return 3 if (self.friction > 0 or rubs) and self.tangential == "history" else 0
@@ -111,8 +111,8 @@ def damping_ratio(restitution: float) -> float:
 
 
 class Closing(NamedTuple):
-    """How fast an overlap grows: now, if forces are what they were a step ago; on the mean of the
-    step before; and half the time of a step (0: nothing changes meanwhile)."""
+    """Growth of an overlap per time: `now`, with the forces of the last step; `before`: mean over
+    the step; half: half the time of a step (0: springs do not change)."""
 
     now: float
     before: float
@@ -123,16 +123,15 @@ class Closing(NamedTuple):
 def normal_force(law, overlap, closing, reduced, ratio):
     """Force along the normal at an overlap (below 0: a gap), and the stiffness.
 
-    `closing` is how fast it grows, `reduced` the reduced mass, `ratio` the damping ratio of a
-    surface that has its own, else -1.
+    `closing`: growth of the overlap; `reduced`: reduced mass; `ratio`: damping ratio of a surface
+    that has its own, else -1.
     """
 
 
 @scalar
 def rate_of_now(overlap, closing, spring, stiffness, damping, reduced):
-    """The rate at which an overlap grows, to second order in the step: `closing.now`, and what half
-    a step of the change of the pair's own force adds; where spheres have just touched all of that
-    force is new."""
+    """The growth of an overlap per time, to second order in the step: `closing.now`, and half a
+    step of the change of the pair's own force; at the first touch all of this force is new."""
     per_mass = closing.half / reduced
     grown = 2.0 * closing.half * closing.before
     more = -spring

@@ -21,6 +21,17 @@ from mesokit.method.spheres.soft.pair.protocol import (
 USUAL_RESTITUTION, USUAL_TIME = 0.8, 0.01
 
 
+class Linear(NamedTuple):
+    """stiffness, per_mass: the stiffness is the first and the second times the reduced mass;
+    damping, ratio: the damping is the first and the second times sqrt(stiffness * mass); pulls."""
+
+    stiffness: float
+    per_mass: float
+    damping: float
+    ratio: float
+    pulls: float
+
+
 @component
 class SpringDashpot(ContactLaw):
     """A force F = k x + g dx/dt at the overlap x.
@@ -50,11 +61,7 @@ class SpringDashpot(ContactLaw):
         le=1,
     )
     contact_time: float | None = param(
-        None,
-        doc="how long a collision takes (0.01 unless said)",
-        unit="time",
-        ge=1e-9,
-        le=1e9,
+        None, doc="how long a collision takes (0.01 unless said)", unit="time", ge=1e-9, le=1e9
     )
     stiffness: float | None = param(
         None, doc="of the spring, in place of the contact time", unit="mass/time^2", gt=0, le=1e15
@@ -93,7 +100,6 @@ class SpringDashpot(ContactLaw):
         return k, law.damping + law.ratio * math.sqrt(k * mass)
 
     def largest_force(self, case: Case) -> float:
-        """Force of an overlap of a whole diameter, of the heaviest."""
         box, kinds = case.box, case.spheres.kinds
         heaviest = max(kind.mean_mass(box.dimension) * (1 + kind.spread) ** 3 for kind in kinds)
         k, _ = self.constants(heaviest)
@@ -104,23 +110,10 @@ class SpringDashpot(ContactLaw):
         return theory.spring_dashpot(*self.constants(mass), mass, self.pulls).time
 
     def overlap_of(self, mass: float, speed: float) -> float:
-        """The largest overlap without damping."""
         return speed * math.sqrt(mass / self.constants(mass)[0])
 
     def restitution_of(self, mass: float, speed: float) -> float:
-        """Restitution; the speed does not matter."""
         return theory.spring_dashpot(*self.constants(mass), mass, self.pulls).restitution
-
-
-class Linear(NamedTuple):
-    """stiffness, per_mass: the stiffness is the first and the second times the reduced mass;
-    damping, ratio: the damping is the first and the second times sqrt(stiffness * mass); pulls."""
-
-    stiffness: float
-    per_mass: float
-    damping: float
-    ratio: float
-    pulls: float
 
 
 @normal_force.register(Linear)

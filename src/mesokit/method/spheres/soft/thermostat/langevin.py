@@ -10,8 +10,8 @@ from mesokit.method.spheres.soft.thermostat.protocol import SoftThermostat
 @component
 class Langevin(SoftThermostat):
     """Friction and noise on every sphere, in the middle of the flight of a step (the splitting
-    BAOAB of Leimkuhler and Matthews 2013). Momentum is not kept. Spheres that turn feel
-    both as well."""
+    BAOAB of Leimkuhler and Matthews 2013). Momentum is not kept. Both act on
+    spins as well."""
 
     rule: Literal["langevin"] = tag("langevin")
     kT: float = param(1.0, doc="thermal energy of the bath", unit="kT", gt=0, le=1e9)
@@ -22,5 +22,4 @@ class Langevin(SoftThermostat):
         return self.kT
 
     def decay(self, timestep: float) -> float:
-        """By how much velocities decay in a step."""
         return math.exp(-self.friction * timestep)

@@ -1,4 +1,4 @@
-"""What a thermostat of soft spheres is."""
+"""Base of the thermostats of soft spheres."""
 
 from mesokit.case.component import component
 from mesokit.case.registry import family
@@ -15,10 +15,10 @@ class SoftThermostat:
         return 0.0
 
     def decay(self, timestep: float) -> float:
-        """By how much velocities decay in a step, beside noise; 1: not at all."""
+        """Factor of velocities in a step, beside noise; 1 without friction."""
         return 1.0
 
     @property
     def scaled_every(self) -> int:
-        """After how many steps velocities are scaled to hold the thermal energy; 0: never."""
+        """Number of steps after which velocities are scaled to the thermal energy; 0: never."""
         return 0

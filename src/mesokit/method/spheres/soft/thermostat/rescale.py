@@ -24,5 +24,4 @@ class RescaleAll(SoftThermostat):
 
     @property
     def scaled_every(self) -> int:
-        """After how many steps."""
         return self.every

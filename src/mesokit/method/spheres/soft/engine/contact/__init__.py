@@ -1,3 +1,3 @@
 """Forces of spheres that touch one another, and walls."""
 
-from mesokit.method.spheres.soft.engine.contact import act, solids  # noqa: F401  registers
+from mesokit.method.spheres.soft.engine.contact import walls  # noqa: F401  registers

@@ -1,16 +1,15 @@
 """Forces of spheres that touch: along the normal, along the surface, and against rolling.
 
-What one sphere of a contact finds is bit for bit minus what the other does, for all the same
-numbers come in, with the other sign or in another order of two terms. Pairs that will touch within
-half a step have a force as well, of the dashpot alone.
+The forces on the two spheres of a contact are opposite to the last bit: the same numbers enter
+both, with opposite signs or with two terms exchanged. Pairs that will touch within half a step have
+the force of the dashpot alone.
 """
 
 import math
 from typing import Any, NamedTuple
 
-from mesokit.method.spheres.soft.engine.acting import ahead, quantum, turns
-from mesokit.method.spheres.soft.engine.contact.spring import Slider, Springs, stretched
-from mesokit.method.spheres.soft.engine.contact.sums import opposite
+from mesokit.method.spheres.soft.engine.acting import turns
+from mesokit.method.spheres.soft.engine.contact.remembered import Slider, Springs, stretched
 from mesokit.method.spheres.soft.engine.geometry import reach, row
 from mesokit.method.spheres.soft.engine.groups import INVERSE
 from mesokit.method.spheres.soft.pair.protocol import Closing, normal_energy, normal_force
@@ -27,7 +26,7 @@ class Contact(NamedTuple):
     normal: force along the normal; stiffness, damping: of the spring along the surface, over the
     normal stiffness and over sqrt(normal stiffness * mass); friction: Coulomb's coefficient;
     memory: 1 for a spring along the surface, 0 for the dashpot alone; rolling: its coefficient;
-    ahead: how far spheres may come nearer in half a step; quantum and its inverse.
+    ahead: largest approach of spheres in half a step; quantum of force and its inverse.
     """
 
     normal: Any
@@ -42,11 +41,11 @@ class Contact(NamedTuple):
 
 
 class Touch(NamedTuple):
-    """One contact, as one of the two spheres sees it.
+    """One contact of a sphere with another, or with a wall.
 
     overlap; normal: from the other to this; reduced: mass; arm: radius of this; roller: reduced
-    radius; closing: how fast the overlap grows; velocity: of this against the other at the contact;
-    turning: difference of the angular velocities; ratio, friction: of damping and of Coulomb.
+    radius; closing: growth of the overlap; velocity: of this relative to the other at the contact;
+    turning: difference of the angular velocities; ratio: of damping; friction: of Coulomb.
     """
 
     overlap: float
@@ -61,24 +60,12 @@ class Touch(NamedTuple):
     friction: float
 
 
-@quantum.register(Contact)
-def _(law):
-    return law.quantum
-
-
-@ahead.register(Contact)
-def _(law):
-    return law.ahead
-
-
-@turns.register(Contact)
-def _(law):
-    return True
+turns.register(Contact)(lambda law: True)
 
 
 class Body(NamedTuple):
-    """One of the two of a contact: radius, inverse mass, the velocity that dashpots see, the
-    velocity and the angular velocity."""
+    """One sphere of a contact: radius, inverse mass, velocity for dashpots along the normal (at the
+    end of the step), velocity (at half the step) and angular velocity."""
 
     reach: float
     inverse: float
@@ -89,7 +76,7 @@ class Body(NamedTuple):
 
 @scalar
 def body(bodies, seen, i):
-    """Sphere i, whose dashpots see velocities `seen`."""
+    """Sphere i, with the velocities `seen` (n, 3) for dashpots along the normal."""
     velocity = row(bodies.velocity, i)
     return Body(
         reach(bodies, i), bodies.velocity[i, INVERSE], row(seen, i), velocity, row(bodies.spin, i)
@@ -97,9 +84,9 @@ def body(bodies, seen, i):
 
 
 class Meeting(NamedTuple):
-    """Two spheres of a contact: their radii, the sum of their inverse masses, the difference of the
-    velocities that dashpots see and of those there are, the sum of radii times angular velocities,
-    and the difference of the angular velocities."""
+    """Two spheres of a contact: their radii, the sum of their inverse masses, the differences of
+    `Body.seen` and of velocities, the sum of radii times angular velocities, and the difference of
+    the angular velocities."""
 
     reach: float
     other: float
@@ -112,7 +99,7 @@ class Meeting(NamedTuple):
 
 @scalar
 def meeting(one, other):
-    """All that a contact of two spheres depends on, except their places."""
+    """The numbers of a contact of two spheres that do not depend on places."""
     return Meeting(
         one.reach,
         other.reach,
@@ -126,7 +113,7 @@ def meeting(one, other):
 
 @scalar
 def between(law, half, separation, met):
-    """The contact of one sphere with another, which is `separation` off, half a step long."""
+    """The contact of one sphere with another; `half`: half a step, `separation`: from the other."""
     distance = math.sqrt(dot(separation, separation))
     normal, both = scaled(1.0 / distance, separation), met.reach + met.other
     closing = Closing(-dot(met.foreseen, normal), -dot(met.velocity, normal), half)
@@ -185,14 +172,22 @@ def at_wall(half, one, there):
 
 
 class Answer(NamedTuple):
-    """Force on the sphere, the cross products of the normal with the force along the surface and
-    with that against rolling, and what is remembered. The other sphere has minus the first and the
-    third, and the second as it is."""
+    """Force on the sphere, cross products of the normal with the force along the surface and with
+    that against rolling, and springs. For the other sphere the force and the third change sign."""
 
     force: tuple[float, float, float]
     along: tuple[float, float, float]
     against: tuple[float, float, float]
     springs: Springs
+
+
+@scalar
+def sliding_of(law, touch, normal_part, stiffness):
+    """The slider of friction, and the velocity of the surfaces along one another."""
+    damping = law.damping * math.sqrt(stiffness * touch.reduced)
+    limit = touch.friction * abs(normal_part)
+    slider = Slider(law.memory * law.stiffness * stiffness, damping, limit)
+    return slider, added_scaled(touch.velocity, -dot(touch.velocity, touch.normal), touch.normal)
 
 
 @scalar
@@ -204,19 +199,16 @@ def answer(law, touch, springs, step, rolls):
     force, along, against = scaled(normal_part, touch.normal), NONE, NONE
     slid, rolled = NONE, NONE
     if touch.overlap > 0.0:
-        damping = law.damping * math.sqrt(stiffness * touch.reduced)
+        slider, sliding = sliding_of(law, touch, normal_part, stiffness)
         if touch.friction > 0.0:
-            sliding = added_scaled(touch.velocity, -dot(touch.velocity, touch.normal), touch.normal)
-            slider = Slider(
-                law.memory * law.stiffness * stiffness, damping, touch.friction * abs(normal_part)
-            )
             drag, slid = stretched(slider, springs.sliding, sliding, touch.normal, step)
             force, along = added(force, drag), outer(touch.normal, drag)
         if rolls:
-            # how fast surfaces would slip if they did not roll (Luding 2008, eq. 22)
+            # The velocity at which surfaces would slip without rolling (Luding 2008, eq. 22).
             rolling = scaled(-touch.roller, outer(touch.turning, touch.normal))
-            slider = Slider(law.stiffness * stiffness, damping, law.rolling * abs(normal_part))
-            drag, rolled = stretched(slider, springs.rolling, rolling, touch.normal, step)
+            limit = law.rolling * abs(normal_part)
+            roller = Slider(law.stiffness * stiffness, slider.damping, limit)
+            drag, rolled = stretched(roller, springs.rolling, rolling, touch.normal, step)
             against = outer(touch.normal, drag)
     return Answer(force, along, against, Springs(slid, rolled))
 
@@ -233,8 +225,10 @@ def torque_of(touch, found, arm, rolls):
 @scalar
 def torque_on_other(touch, found, arm, rolls):
     """Torque on the other sphere, of this radius."""
-    back = Answer(found.force, found.along, opposite(found.against), found.springs)
-    return torque_of(touch, back, arm, rolls)
+    torque = scaled(-arm, found.along)
+    if rolls:
+        torque = added_scaled(torque, touch.roller, found.against)
+    return torque
 
 
 @scalar
@@ -247,12 +241,7 @@ def at_rest(law, touch, springs):
     energy = normal_energy(law.normal, touch.overlap, touch.reduced)
     force = scaled(normal_part, touch.normal)
     if touch.friction > 0.0:
-        slider = Slider(
-            law.memory * law.stiffness * stiffness,
-            law.damping * math.sqrt(stiffness * touch.reduced),
-            touch.friction * abs(normal_part),
-        )
-        sliding = added_scaled(touch.velocity, -dot(touch.velocity, touch.normal), touch.normal)
+        slider, sliding = sliding_of(law, touch, normal_part, stiffness)
         along, _ = stretched(slider, springs.sliding, sliding, touch.normal, 0.0)
         force = added(force, along)
         energy += 0.5 * slider.stiffness * dot(springs.sliding, springs.sliding)

@@ -1,6 +1,6 @@
-"""Room for a batch of contacts: rows at constant offsets, one number of each contact side by side.
+"""Memory for a batch of contacts: rows at constant offsets, one number of each contact in a row.
 
-LLVM then sees that rows do not overlap, and makes of the loop over contacts one over vectors.
+LLVM can then prove that rows do not overlap, and makes vectors of the loop over contacts.
 """
 
 from typing import Any, NamedTuple
@@ -9,28 +9,24 @@ import numpy as np
 
 from mesokit.loops.layout import zeros
 from mesokit.method.spheres.soft.engine.contact.force import Meeting
-from mesokit.method.spheres.soft.engine.contact.spring import Springs
-from mesokit.method.spheres.soft.engine.taken import nothing_taken
+from mesokit.method.spheres.soft.engine.contact.remembered import Springs
+from mesokit.method.spheres.soft.engine.taken import WIDTH
 from mesokit.scalar.jit import elementwise, for_each, scalar
 
-BATCH = 64  # contacts; what they need fits in the first-level cache
+BATCH = 64  # contacts; their data fit in the first-level cache
 GROUP = 8  # of which so many are a vector at most
 ROW = np.uint64(BATCH + 8)
-# how much there is of each
+# patterns of `load`
 COUNT, VECTOR, MEETING, SPRINGS = (0,) * 3, (0.0,) * 3, (0.0,) * 15, (0.0,) * 6
-# rows of numbers: where the vector, what the two have and springs begin, and the bound of forces
+# first rows of numbers: separation, Meeting, springs, bound of forces
 SEPARATION, MET, KEPT, BOUND, NUMBERS = 0, 3, 18, 24, 25
 FORCE, TORQUE, BACK, COUNTS = 0, 3, 6, 9  # rows of counts: on the one, and the torque on the other
-FIRST, SECOND, PLACE = (
-    np.uint64(0),
-    ROW,
-    np.uint64(2) * ROW,
-)  # sphere, partner, number of the contact
+FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # sphere, partner, contact
 
 
 class Room(NamedTuple):
-    """numbers (25 rows), counts (9 rows), in quanta, and ids (3 rows) of a batch of contacts; taken
-    (surfaces, 8): what surfaces have taken, see `machine.taken`."""
+    """numbers (25 rows), counts in quanta (9 rows) and pairs (3 rows) of a batch of contacts; taken
+    (surfaces, 8): momentum of surfaces, see `take`."""
 
     numbers: Any
     counts: Any
@@ -39,14 +35,17 @@ class Room(NamedTuple):
 
 
 def rooms(threads: int, surfaces: int) -> Room:
-    """One for each thread."""
+    """Room for a batch of each thread."""
     row = int(ROW)
-    return Room(
-        zeros((threads, NUMBERS * row)),
-        zeros((threads, COUNTS * row), np.int64),
-        zeros((threads, 3 * row), np.uint64),
-        nothing_taken(threads, surfaces),
-    )
+    numbers, counts = zeros((threads, NUMBERS * row)), zeros((threads, COUNTS * row), np.int64)
+    pairs, taken = zeros((threads, 3 * row), np.uint64), zeros((threads, surfaces, WIDTH), np.int64)
+    return Room(numbers, counts, pairs, taken)
+
+
+@scalar
+def room_of_thread(rooms, t):
+    """The room of thread t."""
+    return Room(rooms.numbers[t], rooms.counts[t], rooms.pairs[t], rooms.taken[t])
 
 
 @elementwise
@@ -65,30 +64,24 @@ def store(numbers, start, c, values):
 def load_meeting(numbers, c):
     """Load the properties of the two spheres of contact c."""
     a = load(numbers, MET, c, MEETING)
-    foreseen, velocity = (a[3], a[4], a[5]), (a[6], a[7], a[8])
-    rolled, turning = (a[9], a[10], a[11]), (a[12], a[13], a[14])
-    return Meeting(a[0], a[1], a[2], foreseen, velocity, rolled, turning)
+    return Meeting(a[0], a[1], a[2], a[3:6], a[6:9], a[9:12], a[12:15])
 
 
 @scalar
 def store_meeting(numbers, c, met):
-    """Write what the two of contact c have."""
-    store(numbers, MET, c, (met.reach, met.other, met.inverse))
-    store(numbers, MET + 3, c, met.foreseen)
-    store(numbers, MET + 6, c, met.velocity)
-    store(numbers, MET + 9, c, met.rolled)
-    store(numbers, MET + 12, c, met.turning)
+    """Write the properties of the two spheres of contact c."""
+    both = met.reach, met.other, met.inverse
+    store(numbers, MET, c, both + met.foreseen + met.velocity + met.rolled + met.turning)
 
 
 @scalar
 def load_springs(numbers, c):
     """Load the springs of contact c."""
     a = load(numbers, KEPT, c, SPRINGS)
-    return Springs((a[0], a[1], a[2]), (a[3], a[4], a[5]))
+    return Springs(a[:3], a[3:])
 
 
 @scalar
 def store_springs(numbers, c, springs):
-    """Write what contact c remembers."""
-    store(numbers, KEPT, c, springs.sliding)
-    store(numbers, KEPT + 3, c, springs.rolling)
+    """Write the springs of contact c."""
+    store(numbers, KEPT, c, springs.sliding + springs.rolling)

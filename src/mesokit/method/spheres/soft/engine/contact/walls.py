@@ -1,7 +1,11 @@
-"""Contacts of spheres with walls."""
+"""Contacts of spheres with walls and solids, and the forces and readings of all contacts."""
 
-from mesokit.method.spheres.soft.engine.acting import beside, measure_beside
+from mesokit.geometry.protocol import Nothing
+from mesokit.geometry.solids.bodies import BODY, NO_TERM, surface_velocity
+from mesokit.method.spheres.soft.engine.acting import act, beside, measure, measure_beside
 from mesokit.method.spheres.soft.engine.contact.force import (
+    NONE,
+    Contact,
     answer,
     at_rest,
     at_wall,
@@ -9,13 +13,37 @@ from mesokit.method.spheres.soft.engine.contact.force import (
     surface,
     torque_of,
 )
+from mesokit.method.spheres.soft.engine.contact.pairs import add_contact_forces, measure_pairs
 from mesokit.method.spheres.soft.engine.contact.remembered import NO_SPRINGS, keep, kept
 from mesokit.method.spheres.soft.engine.contact.sums import abs_sum, add, counted
 from mesokit.method.spheres.soft.engine.geometry import from_wall, reach, row
-from mesokit.method.spheres.soft.engine.groups import ENERGY, TOUCHING
+from mesokit.method.spheres.soft.engine.groups import ENERGY, LARGEST, TOUCHING, Solid
+from mesokit.method.spheres.soft.engine.solid import (
+    Place,
+    contact_with,
+    forget_others,
+    lengthened,
+    place_at_solid,
+    shortened,
+)
 from mesokit.method.spheres.soft.engine.taken import take
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import whole, word
+
+
+@act.register(Contact)
+def _(law, mine, time, step, world, noted, room):
+    largest = add_contact_forces(law, mine, step, world, room)
+    for i in range(mine[0], mine[1]):
+        largest = max(largest, contact_forces_from_walls(law, i, time, step, world, room))
+    noted[LARGEST] = max(noted[LARGEST], largest * law.scale)
+
+
+@measure.register(Contact)
+def _(law, i, time, world, readings):
+    measure_pairs(law, i, world, readings)
+    measure_walls(law, i, time, world, readings)
 
 
 @scalar
@@ -23,6 +51,8 @@ def contact_forces_from_walls(law, i, time, step, world, room):
     """Add forces and torques of walls on sphere i; returns a bound of them."""
     bodies, box, walls = world.bodies, world.box, world.walls
     r, largest = row(bodies.place, i), 0.0
+    # Walls at t + dt, as spheres are. Each sphere has memory for a contact with each wall; the
+    # springs of one that does not touch are cleared.
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
         if distance < reach(bodies, i) + law.ahead:
@@ -71,3 +101,60 @@ def measure_wall(law, touch, springs, readings):
     energy, _ = at_rest(law, touch, springs)
     readings[ENERGY] += quanta(2.0 * energy, law.scale)
     readings[TOUCHING] += 1
+
+
+beside.register(Nothing)(lambda solid, law, i, step, world, room: 0.0)
+
+
+@measure_beside.register(Nothing)
+def _(solid, law, i, world, readings):
+    return
+
+
+@scalar
+def touched(law, solid, bodies, i):
+    """The surfaces that sphere i touches, or is about to: three at most."""
+    r, within = row(bodies.place, i), reach(bodies, i) + law.ahead
+    nowhere = Place(within, NONE, NO_TERM)
+    first = place_at_solid(solid, r, within, NONE, NONE)
+    second, third = nowhere, nowhere
+    if first.term != NO_TERM:
+        second = place_at_solid(solid, r, within, first.normal, NONE)
+    if second.term != NO_TERM:
+        third = place_at_solid(solid, r, within, first.normal, second.normal)
+    return first, second, third
+
+
+@scalar
+def surface_at(solid, bodies, i, place):
+    """The surface at a place beside sphere i, and the number of its body."""
+    tables, r = solid.bodies.tables, row(bodies.place, i)
+    moves = lengthened(surface_velocity(tables, place.term, shortened(r, solid.pattern)))
+    body = whole(word(tables, BODY), place.term)
+    return surface(place.distance, place.normal, moves, solid.own, body), body
+
+
+@beside.register(Solid)
+def _(solid, law, i, step, world, room):
+    bodies, largest = world.bodies, 0.0
+    # Terms at the places of t + dt. A contact that ends frees the memory of its springs first.
+    places = touched(law, solid, bodies, i)
+    forget_others(solid, i, places[0].term, places[1].term, places[2].term)
+    for place in places:
+        if place.term != NO_TERM:
+            there, b = surface_at(solid, bodies, i, place)
+            c = contact_with(solid, i, place.term)
+            bound, counts = add_force(law, i, there, solid.springs, c, step, bodies)
+            take(room.taken, len(world.walls.rows) + b, counts)
+            largest = max(largest, bound)
+    return largest
+
+
+@measure_beside.register(Solid)
+def _(solid, law, i, world, readings):
+    for place in touched(law, solid, world.bodies, i):
+        if place.term != NO_TERM and place.distance < reach(world.bodies, i):
+            there, _ = surface_at(solid, world.bodies, i, place)
+            touch = at_wall(0.0, body(world.bodies, world.bodies.velocity, i), there)
+            springs = kept(solid.springs, contact_with(solid, i, place.term))
+            measure_wall(law, touch, springs, readings)

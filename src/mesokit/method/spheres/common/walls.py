@@ -1,4 +1,4 @@
-"""The surfaces of a case as rows of numbers, whatever they do to spheres."""
+"""Walls of spheres as rows of numbers for the loops: planes and round surfaces, and vibration."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -13,16 +13,57 @@ from mesokit.errors import CaseError
 from mesokit.geometry.region import Part, Room, Term
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.surface import Surface
-from mesokit.method.spheres.common.wall import rows as columns
+from mesokit.loops.neighbours import nearest_image
+from mesokit.scalar.jit import elementwise, scalar
+from mesokit.scalar.vector import added_scaled, dot, scaled
+from mesokit.seam.engine import Array
 
-Array = NDArray[np.float64]
-ROUND = {"ball": columns.OUTSIDE, "rod": columns.OUTSIDE}
+# columns: kind, place of three, unit vector of three (normal of a plane, axis of a cylinder),
+# radius, velocity of three, amplitude, frequency, phase at the start of the window
+KIND, PLACE, AXIS, ROUND, MOVES = 0, 1, 4, 7, 8
+AMPLITUDE, FREQUENCY, PHASE, COLUMNS = 11, 12, 13, 14
+PLANE, OUTSIDE, INSIDE = 0.0, 1.0, -1.0  # kinds: a plane; fluid outside or inside of a round wall
+ROUND_KINDS = ("ball", "rod")
 ALLOWED = "expected plates, or something round, or a rectangle or cuboid with fluid = 'inside'"
 
 
+@scalar
+def vibration(walls, w, time):
+    """Displacement and velocity of a wall along its normal, and the bound of its acceleration."""
+    amplitude, frequency = walls[w, AMPLITUDE], walls[w, FREQUENCY]
+    if amplitude == 0.0:
+        return 0.0, 0.0, 0.0
+    phase = frequency * time + walls[w, PHASE]
+    return (
+        amplitude * math.sin(phase),
+        amplitude * frequency * math.cos(phase),
+        amplitude * frequency * frequency,
+    )
+
+
+@elementwise
+def entries(rows, i, start, pattern):
+    """Consecutive entries of row i, as a tuple as long as `pattern`."""
+    return "rows[i, start + {k}]"
+
+
+@scalar
+def outward(walls, w, box, r):
+    """Distance of a place from a wall that does not vibrate, and the normal into the box."""
+    from_place = added_scaled(r, -1.0, entries(walls, w, PLACE, r))
+    axis = entries(walls, w, AXIS, r)
+    if walls[w, KIND] == PLANE:
+        return dot(from_place, axis), axis
+    from_place = nearest_image(box, from_place)
+    across = added_scaled(from_place, -dot(from_place, axis), axis)
+    length = math.sqrt(dot(across, across))
+    normal = scaled(walls[w, KIND] / length, across) if length > 0.0 else axis
+    return walls[w, KIND] * (length - walls[w, ROUND]), normal
+
+
 class SurfaceRows(NamedTuple):
-    """rows (walls, 14); surfaces: the number of the wall and the surface of each; surface (walls,):
-    number of each one's body; names of the bodies."""
+    """rows (walls, 14); surfaces: number of the wall and surface of each row; surface (walls,):
+    number of the body of each row; names of the bodies."""
 
     rows: Array
     surfaces: list[tuple[int, Surface]]
@@ -49,9 +90,9 @@ def other_walls(case: Case) -> list[int]:
 
 
 def surface_rows(case: Case, without: Sequence[int] = ()) -> SurfaceRows:
-    """Where the walls of a case are and how they move, whatever they do to spheres.
+    """Places and motion of the walls of a case, except those of the numbers `without`.
 
-    Raises CaseError for those that are no rows, but for the walls that are left out.
+    Raises CaseError for walls that are no rows.
     """
     room, method = room_of(case), case.run.method
     rows: list[Array] = []
@@ -75,7 +116,7 @@ def surface_rows(case: Case, without: Sequence[int] = ()) -> SurfaceRows:
                 body_of.append(len(names))
             names.append(body.name)
     return SurfaceRows(
-        np.array(rows, float).reshape(-1, columns.COLUMNS),
+        np.array(rows, float).reshape(-1, COLUMNS),
         surfaces,
         np.array(body_of, np.int64),
         tuple(names),
@@ -104,7 +145,7 @@ def _parts(body: Any, room: Room, i: int, method: str) -> Iterator[Part]:
             yield from _sides(part, room.dimension)
         elif part.kind == "half_space" and part.sign > 0:
             yield part
-        elif part.kind in ROUND:
+        elif part.kind in ROUND_KINDS:
             if _in_box(part, room):
                 yield part  # its images are found by the nearest one
         else:
@@ -116,7 +157,7 @@ def _alone(term: Term, room: Room) -> Part | None:
     if len(term) == 1:
         return term[0]
     part = next((part for part in term if _in_box(part, room)), None)
-    if part is None or part.sign > 0 or part.kind not in (*ROUND, "brick"):
+    if part is None or part.sign > 0 or part.kind not in (*ROUND_KINDS, "brick"):
         return None
     for other in term:  # images that do not overlap
         offset = [a - b for a, b in zip(other.numbers[:3], part.numbers[:3], strict=True)]
@@ -155,18 +196,18 @@ def _sides(part: Part, dimension: int) -> Iterator[Part]:
 
 
 def _row(part: Part, surface: Surface, dimension: int) -> Array:
-    row = np.zeros(columns.COLUMNS)
-    row[columns.PLACE : columns.PLACE + 3] = part.numbers[:3]
+    row = np.zeros(COLUMNS)
+    row[PLACE : PLACE + 3] = part.numbers[:3]
     if part.kind == "half_space":
-        row[columns.KIND] = columns.PLANE
-        row[columns.AXIS : columns.AXIS + 3] = part.numbers[3:6]
+        row[KIND] = PLANE
+        row[AXIS : AXIS + 3] = part.numbers[3:6]
     else:
-        row[columns.KIND] = part.sign  # +1: solid within, spheres outside
-        row[columns.ROUND] = part.numbers[6]
+        row[KIND] = part.sign  # +1: solid within, spheres outside
+        row[ROUND] = part.numbers[6]
         if part.kind == "rod":
-            row[columns.AXIS : columns.AXIS + 3] = part.numbers[3:6]
-    row[columns.MOVES : columns.MOVES + dimension] = surface.velocity or 0.0
+            row[AXIS : AXIS + 3] = part.numbers[3:6]
+    row[MOVES : MOVES + dimension] = surface.velocity or 0.0
     if surface.contact is not None:
-        row[columns.AMPLITUDE] = surface.contact.amplitude
-        row[columns.FREQUENCY] = surface.contact.frequency
+        row[AMPLITUDE] = surface.contact.amplitude
+        row[FREQUENCY] = surface.contact.frequency
     return row

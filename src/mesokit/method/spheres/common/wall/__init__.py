@@ -1,1 +1,0 @@
-"""Walls of spheres: rows of numbers for the loops, solids for pictures."""
