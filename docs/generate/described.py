@@ -9,8 +9,7 @@ from typing import Any
 
 import griffe
 
-from mesokit.case.describe.docstring import Documented
-from mesokit.case.describe.keys import Key
+from mesokit.case.describe.keys import Documented, Key
 
 DOCTEST = re.compile(r"^>>> .*(?:\n.+)*", re.MULTILINE)
 

@@ -30,10 +30,9 @@ from mesokit import (
     VelocityProfile,
     theory,
 )
-from mesokit.method.mpcd.derived import derive
+from mesokit.method.mpcd.derived import derive, summary
 from mesokit.method.mpcd.expected.heating import temperature_rise
 from mesokit.method.mpcd.expected.molecules import longest_relaxation
-from mesokit.method.mpcd.summary import summary
 
 PUSH = {"force": Uniform([0.02, 0])}
 

@@ -13,7 +13,7 @@ import pytest
 
 import mesokit
 from mesokit.io import atomic
-from mesokit.method.mpcd.summary import summary
+from mesokit.method.mpcd.derived import summary
 from mesokit.processes.cores import usable_cores
 
 ON_POSIX = pytest.mark.skipif(sys.platform == "win32", reason="what it stands for is real there")

@@ -92,7 +92,7 @@ class Watched:
 @contextlib.contextmanager
 def watched(seen):
     """Meanwhile note which rows are read of files."""
-    load, snapshot, earlier = arrays._load, first_state.read_snapshot, EarlierRows._folded
+    load, snapshot, earlier = arrays.array_in_file, first_state.read_snapshot, EarlierRows._folded
 
     def read(*given):
         seen[:] = True
@@ -110,7 +110,7 @@ def watched(seen):
 
     with contextlib.ExitStack() as changed:
         for where, name, value in (
-            (arrays, "_load", loaded),
+            (arrays, "array_in_file", loaded),
             (first_state, "read_snapshot", read),
             (EarlierRows, "_folded", folded),
         ):

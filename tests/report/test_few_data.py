@@ -29,7 +29,7 @@ def test_a_displacement_of_few_lags(steps, tmp_path):
 
 def test_stress_in_less_than_a_period_has_no_figure(make_case, tmp_path):
     """A line says so; a period later there is one."""
-    from mesokit.case.shear.start_up import StartUp
+    from mesokit.case.shear.two_ramps import StartUp
 
     shear = StartUp(rate=0.1, start=1.0, period=2.0)
     case = make_case((4, 4), [StressInTime(window=5)], shear=shear)

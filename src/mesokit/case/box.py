@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from pydantic import field_validator
@@ -19,7 +20,7 @@ from mesokit.scalar.jit import generic, scalar
 Axis = Literal["x", "y", "z"]
 AXES: tuple[Axis, ...] = ("x", "y", "z")
 if TYPE_CHECKING:
-    Length = int  # where a method has cells: the case then asks for whole numbers
+    Length = int  # where a method has cells: the case is checked for whole numbers
 else:
     Length = float
 
@@ -97,14 +98,11 @@ class Box:
     @property
     def volume(self) -> int:
         """Area or volume: the number of cells where there are cells."""
-        cells = 1
-        for length in self.size:
-            cells *= length
-        return cells
+        return math.prod(self.size)
 
     @property
     def history(self) -> ShearHistory | None:
-        """How the shear rate changes in time, whichever keys say so; None without shear.
+        """History of the shear rate, whichever keys define it; None without shear.
 
         >>> Box([8, 8], shear_rate=0.1).history
         SteadyShear(rule='steady', rate=0.1)
@@ -117,12 +115,12 @@ class Box:
 
     @property
     def sheared(self) -> bool:
-        """Whether images ever move."""
+        """True if images ever move."""
         return bool(self.shear_rate or (self.shear is not None and self.shear.largest))
 
     @property
     def shear_key(self) -> str:
-        """The key that says how it is sheared, and its value, as messages name it.
+        """The key of the shear and its value, as messages name it.
 
         >>> Box([8, 8], shear_rate=0.1).shear_key
         'box.shear_rate = 0.1'
@@ -134,20 +132,17 @@ class Box:
     @property
     def steady_rate(self) -> float:
         """The shear rate if it is the same at all times; 0 where it changes, or there is none."""
-        history = self.history
-        return history.rate_at(0.0) if history is not None and history.steady else 0.0
+        return self.first_rate if self.history and self.history.steady else 0.0
 
     @property
     def first_rate(self) -> float:
         """The shear rate at time 0."""
-        history = self.history
-        return 0.0 if history is None else history.rate_at(0.0)
+        return self.history.rate_at(0.0) if self.history else 0.0
 
     @property
     def largest_rate(self) -> float:
         """Largest size of the shear rate."""
-        history = self.history
-        return 0.0 if history is None else history.largest
+        return self.history.largest if self.history else 0.0
 
     @property
     def oscillation(self) -> OscillatingShear | None:
@@ -211,9 +206,7 @@ def at_time(box, time):
     """The box at a time: under shear its images have moved."""
 
 
-@at_time.register(Periodic)
-def _(box, time):
-    return box
+at_time.register(Periodic)(lambda box, time: box)
 
 
 @at_time.register(Sheared)
@@ -286,14 +279,10 @@ def _(box, r, v, crossed):
     return r, with_item(v, 0, v[0] + crossed[1] * box.speed)
 
 
-@slide.register(Periodic)
-def _(box, r, v, shift):
-    return r, v, ()
+slide.register(Periodic)(lambda box, r, v, shift: (r, v, ()))
 
 
-@slide.register(*SLIDING)
-def _(box, r, v, shift):
-    return fold(box, r, v, shift)
+slide.register(*SLIDING)(lambda box, r, v, shift: fold(box, r, v, shift))
 
 
 @generic
@@ -301,9 +290,7 @@ def peculiar(box, r, v):
     """Velocity relative to the imposed flow."""
 
 
-@peculiar.register(Periodic)
-def _(box, r, v):
-    return v
+peculiar.register(Periodic)(lambda box, r, v: v)
 
 
 @peculiar.register(*SLIDING)

@@ -10,19 +10,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from mesokit.case import checks, methods, toml
 from mesokit.case.box import Box
-from mesokit.case.component import (
-    build,
-    component,
-    known_keys,
-    nearest,
-    one_of,
-    param,
-    show,
-)
+from mesokit.case.component import build, component, known_keys, nearest, one_of, param, show
 from mesokit.case.describe.shown import Shown
-from mesokit.case.log import Log
 from mesokit.case.registry import FAMILIES
-from mesokit.case.run import Run
+from mesokit.case.run import Log, Run
 from mesokit.case.trajectory import Group, Trajectory
 from mesokit.case.units import Units
 from mesokit.errors import CaseError
@@ -69,14 +60,14 @@ class Case(Shown):
     log: Log | None
     units: Units | None
     title: str
-    _method: ClassVar[Any]  # typed in `mesokit.seam.method`, which knows cases
+    _method: ClassVar[Any]  # typed in `mesokit.seam.method`, which imports cases
     if TYPE_CHECKING:
         __dataclass_fields__: ClassVar[dict[str, Any]]
 
         def __getattr__(self, section: str) -> Any: ...
 
     def __new__(cls, *given: Any, **sections: Any) -> Case:
-        """A case of the class that `run.method` asks for."""
+        """A case of the class of `run.method`."""
         if cls is Case:
             run = given[0] if given else sections.get("run")
             cls = case_class(method_named(run))
@@ -107,7 +98,8 @@ class Case(Shown):
         return {"title": "case", "words": words, "rows": rows, "text": text, "fold": "all defaults"}
 
     def __reduce__(self) -> Any:
-        return _again, ({name: getattr(self, name) for name in type(self)._fields()},)
+        fields = {name: getattr(self, name) for name in type(self)._fields()}
+        return functools.partial(Case, **fields), ()
 
     @property
     def groups(self) -> tuple[Group, ...]:
@@ -116,7 +108,7 @@ class Case(Shown):
         return groups
 
     def particles_have(self, what: str) -> bool:
-        """Whether an engine tells something, such as "diameter", of each particle (`Group.has`)."""
+        """True if some group has a quantity such as "diameter" (`Group.has`)."""
         return any(what in group.has for group in self.groups)
 
     @property
@@ -152,9 +144,24 @@ class Case(Shown):
 
         Raises CaseError: one line with key, value and what was expected.
         """
-        _require_method(data.get("run"))
-        made = case_class(method_named(data.get("run")))
-        return build(made, _by_field(made, data), made._method.keys, folder)
+        run = data.get("run")
+        if isinstance(run, dict) and "method" in run:
+            try:
+                build(Run, {"steps": 0, "method": run["method"]})  # other keys depend on it
+            except CaseError as error:
+                raise CaseError(f"run.{error}") from None
+        made = case_class(method_named(run))
+        keys: dict[str, str] = made._method.keys
+        for field, key in keys.items():
+            if field in data:
+                raise CaseError(f"{field}: unknown key; did you mean [[{key}]]?")
+        for key in (*keys.values(), "observe"):
+            if isinstance(data.get(key), dict):
+                raise CaseError(f"{key}: expected [[{key}]], in double brackets")
+        fields = {key: field for field, key in keys.items()}
+        values = {fields.get(key, key): value for key, value in data.items()}
+        _require_sections(made, values)
+        return build(made, values, keys, folder)
 
     def to_toml(self, folder: Path | None = None) -> str:
         """The case as a file, with every default written out; `from_toml` gives an equal case.
@@ -203,49 +210,19 @@ def method_named(run: Any) -> str:
     return given if known else methods.DEFAULT
 
 
-def _require_method(run: Any) -> None:
-    """That there is the method which a table `run` names; other keys have no meaning without."""
-    if isinstance(run, dict) and "method" in run:
-        try:
-            build(Run, {"steps": 0, "method": run["method"]})
-        except CaseError as error:
-            raise CaseError(f"run.{error}") from None
-
-
-def _again(fields: dict[str, Any]) -> Case:
-    return Case(**fields)
-
-
-def _by_field(made: type[Case], data: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a file by the names of the fields."""
-    keys: Mapping[str, str] = made._method.keys
-    for field, key in keys.items():
-        if field in data:
-            raise CaseError(f"{field}: unknown key; did you mean [[{key}]]?")
-    for key in (*keys.values(), "observe"):
-        if isinstance(data.get(key), dict):
-            raise CaseError(f"{key}: expected [[{key}]], in double brackets")
-    fields = {key: field for field, key in keys.items()}
-    values = {fields.get(key, key): value for key, value in data.items()}
-    _require_sections(made, values)
-    return values
-
-
-def _methods_with(key: str) -> list[str]:
-    """The methods of which that is a section, as a file or as Python calls it."""
-    own = {name: case_class(name) for name in methods.METHODS}
-    return [
-        name for name, made in own.items() if key in (*made._fields(), *made._method.keys.values())
-    ]
-
-
 def _require_sections(made: type[Case], given: Mapping[str, Any], where: str = "") -> None:
-    """Raise CaseError for what is no section of a case of this method."""
+    """Raise CaseError for a key that is no section of a case of this method."""
     method, known = made._method, made._fields()
     for key in given:
         if key not in known:
             names = [method.keys.get(name, name) for name in known] if not where else known
-            if others := _methods_with(key):
+            every = {name: case_class(name) for name in methods.METHODS}
+            others = [
+                name
+                for name, other in every.items()
+                if key in (*other._fields(), *other._method.keys.values())
+            ]
+            if others:
                 hint = f"; a section of {one_of(others)} (run.method)"
             else:
                 hint = nearest(key, names) or f"; valid here: {', '.join(names)}"

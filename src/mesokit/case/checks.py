@@ -1,4 +1,4 @@
-"""What every method checks of a case: observables, and the trajectory."""
+"""Checks of a case that all methods share: observables, log and trajectory."""
 
 import dataclasses
 import math
@@ -16,14 +16,13 @@ MOST_BINS = 2**24  # of one observable: some gigabytes
 
 
 def check(case: Any, method: Any) -> None:
-    """Raise CaseError for the first observable that cannot be measured, and for a trajectory
-    of what the method has not."""
+    """Raise CaseError for the first observable that cannot be measured, and for a trajectory of
+    particles or fields that the method does not have."""
     for problem in (
         *offered(case, method.name, method.observables),
         *names(case),
         *bins(case),
         *trajectory(case, case.groups),
-        *fields(case, case.groups),
     ):
         raise CaseError(problem)
     for i, observable in enumerate(case.observe):
@@ -36,7 +35,7 @@ def check(case: Any, method: Any) -> None:
 
 
 def is_offered(part: Any, method: str, observables: tuple[type, ...]) -> bool:
-    """Whether a method offers an observable, or that says that it is for it."""
+    """True if a method offers an observable, or the observable names the method."""
     usual = issubclass(part, observables) and not getattr(part, "of_methods_alone", False)
     return usual or method in part.methods
 
@@ -107,7 +106,7 @@ def log(case: Any, known: Sequence[str]) -> None:
 
 
 def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
-    """Particles that exist, each field once."""
+    """Particles that exist, each field once, and fields that they have."""
     given = case.trajectory
     if given is None:
         return
@@ -121,19 +120,14 @@ def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
         yield f"trajectory.subset = {given.subset}: there are only {number} particles"
     if len(set(given.fields)) < len(given.fields):
         yield f"trajectory.fields = {show(given.fields)}: expected each field once"
-
-
-def fields(case: Any, groups: Sequence[Group]) -> Iterator[str]:
-    """What a trajectory may hold of these particles."""
-    given = case.trajectory
-    for group in groups if given is not None else ():
+    for group in groups:
         for field in given.fields if given.of in ("all", group.name) else ():
             if field not in group.has:
-                known = [name for name in get_args(Quantity) if name in group.has]
+                have = [name for name in get_args(Quantity) if name in group.has]
                 yield (
                     f"trajectory.fields = {show(given.fields)}: {group.name} of method "
                     f"{show(case.run.method)} have no {show(field)}; expected some of "
-                    f"{', '.join(map(show, known))}"
+                    f"{', '.join(map(show, have))}"
                 )
 
 

@@ -14,7 +14,6 @@ import math
 import numbers
 import operator
 import re
-import stat
 import types
 import typing
 from collections.abc import Iterable, Sequence
@@ -22,94 +21,41 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, dataclass_transform
 
 import pydantic
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    ValidationError,
-    ValidationInfo,
-)
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
-from mesokit.case.describe.docstring import Documented
 from mesokit.case.describe.hints import show_signature
+from mesokit.case.describe.keys import Documented
+from mesokit.case.describe.plain import TAGS
 from mesokit.case.registry import FAMILIES, Family, register
 from mesokit.errors import CaseError
 
 T = TypeVar("T")
 
 
-def _located(name: str, info: ValidationInfo) -> str:
-    """A file name that holds wherever it is read: from the folder of the case on, or from here."""
-    folder = (info.context or {}).get("folder") or Path.cwd()
-    try:
-        path = (folder / name).resolve()
-        mode = path.stat().st_mode
-    except (FileNotFoundError, NotADirectoryError, PermissionError):  # where it is read, it is told
-        return str(path)
-    except RuntimeError:  # of Python up to 3.12
-        raise PydanticCustomError("file", "a loop of links; expected a file") from None
-    except (OSError, ValueError) as error:
-        reason = (getattr(error, "strerror", None) or str(error)).lower()
-        raise PydanticCustomError("file", "{reason}; expected a file", {"reason": reason}) from None
-    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):  # a pipe would be waited for, for ever
-        raise PydanticCustomError("file", "a pipe or device; expected a file")
-    return str(path)
-
-
-FileName = Annotated[str, AfterValidator(_located)]
-
-
-class FromContents:
-    """What components share that are given by the contents of a `file`, a FileName.
-
-    The file is read once: the component is then what it held, whatever becomes of it.
-    """
-
-    file: str
-
-    @functools.cached_property
-    def contents(self) -> bytes:
-        """What the file held when it was first needed. Raises CaseError."""
-        try:
-            return Path(self.file).read_bytes()
-        except FileNotFoundError:
-            raise self.wrong("no such file") from None
-        except OSError as error:
-            raise self.wrong(f"cannot be read: {(error.strerror or str(error)).lower()}") from None
-
-    def wrong(self, reason: str) -> CaseError:
-        """The error that says what is wrong with the file."""
-        return CaseError(f"file = {show(self.file, 500)}: {reason}")
-
-
 MANY = 12  # names, more than which are not listed where one of them is near
-TAGS = ("rule", "shape", "quantity", "substance")
 
 
 def param(default: Any = ..., *, doc: str, unit: str = "", **limits: Any) -> Any:
     """A field of a component: default (none: required), one-line meaning, unit, gt/ge/lt/le.
 
-    `symbol` is what formulas and figures write for it, and `unless_said` stands for a default that
-    is no value.
+    `symbol` is written in formulas and figures; `unless_said` stands for a default that is no
+    value.
     """
     extra: dict[str, Any] = {"unit": unit}
-    for known in ("symbol", "unless_said"):
-        if known in limits:
-            extra[known] = limits.pop(known)
+    extra |= {key: limits.pop(key) for key in ("symbol", "unless_said") if key in limits}
     return Field(default, description=doc, json_schema_extra=extra, **limits)
 
 
 def option(*, default: Any, doc: str, kw_only: Literal[True], unit: str = "", **limits: Any) -> Any:
-    """A field that is only given by name, as type checkers ask to have it said."""
+    """A field that is only given by name, which type checkers read from `kw_only`."""
     return param(default, doc=doc, kw_only=kw_only, unit=unit, **limits)
 
 
 def tag(value: str, *, init: Literal[False] = False) -> Any:
     """The field, one of TAGS, whose value names the component in a case file.
 
-    Python code has no need to give it, and type checkers (`init`) do not offer it.
+    Python code does not give it, and type checkers (`init`) do not offer it.
     """
     return Field(value, description="name of the component", kw_only=True)
 
@@ -156,10 +102,8 @@ def is_component(hint: Any) -> bool:
 
 def tag_of(cls: Any) -> tuple[str, str] | None:
     """The tag field of a component and its value, such as ("rule", "srd")."""
-    for field in dataclasses.fields(cls):
-        if field.name in TAGS:
-            return field.name, cls.__pydantic_fields__[field.name].default
-    return None
+    names = [field.name for field in dataclasses.fields(cls) if field.name in TAGS]
+    return (names[0], cls.__pydantic_fields__[names[0]].default) if names else None
 
 
 def name_of(part: Any) -> str:
@@ -191,7 +135,7 @@ def build(
 
 
 def strict(hint: Any) -> Any:
-    """The type hint with our rules for numbers, lists and tagged unions written into it."""
+    """Type hint with the rules for numbers, lists and tagged unions added to it."""
     if hint is float:
         return Annotated[float, BeforeValidator(_real)]
     if hint is int:
@@ -207,16 +151,12 @@ def strict(hint: Any) -> Any:
         if len(members) > 1:
             field = tag_of(members[0])
             assert field is not None, f"{members[0].__name__} has no tag"
-            others = [arg for arg in args if arg not in members]
-            union = _union(members)
+            union = functools.reduce(operator.or_, members)
             tagged = Annotated[union, Field(discriminator=field[0])]  # type: ignore[valid-type]
-            return _union([tagged, *others])
-        return _union([strict(arg) for arg in args])
+            others = (arg for arg in args if arg not in members)
+            return functools.reduce(operator.or_, others, tagged)
+        return functools.reduce(operator.or_, map(strict, args))
     return hint
-
-
-def _union(hints: Sequence[Any]) -> Any:
-    return functools.reduce(operator.or_, hints)
 
 
 def _real(value: Any) -> float:
@@ -251,10 +191,9 @@ def first_line(
     cls: Any, error: ValidationError, rename: dict[str, str] | None = None, start: str = ""
 ) -> str:
     """The most telling of the errors as one line: key path, value, what was expected."""
-    entries = sorted(error.errors(), key=lambda e: not _is_unknown(e))  # a typo explains the rest
-    first = entries[0]
+    first = min(error.errors(), key=lambda e: not _is_unknown(e))  # a typo explains the rest
     path, holder, here = _walk(cls, first["loc"], rename or {}, start)
-    kind, context = first["type"], first.get("ctx", {})
+    kind, given, context = first["type"], first["input"], first.get("ctx", {})
     if _is_unknown(first):
         meant = _meant(holder, str(first["loc"][-1]), rename if holder is cls else None)
         return f"{path}: unknown key{meant}"
@@ -263,19 +202,19 @@ def first_line(
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         tag = str(context["discriminator"]).strip("'")
         path += f".{tag}"
-        known = names_of(here)
-        if kind == "union_tag_not_found":
-            close = difflib.get_close_matches(tag, map(str, first["input"]), 1, 0.7)
-            hint = f"; is {close[0]!r} meant to be it?" if close else ""
-            return f"{path}: missing{hint}; expected {one_of(known)}"
-        own = _own(context["tag"], known, here)
-        return f"{path} = {show(context['tag'])}: {_tag(context['tag'], known, path)}{own}"
+        if kind == "union_tag_invalid":
+            return f"{path} = {show(context['tag'])}: {_tag(context['tag'], here, path)}"
+        close = difflib.get_close_matches(tag, map(str, given), 1, 0.7)
+        hint = f"; is {close[0]!r} meant to be it?" if close else ""
+        return f"{path}: missing{hint}; expected {one_of(names_of(here))}"
     words = _expected(first)
-    if kind == "value_error" and _names_key_of(here if first["loc"] else cls, words):
+    parts = _members(here if first["loc"] else cls)
+    key = re.match(r"(\w+)(\[#\d+\])?(\.| = |: )", words) if kind == "value_error" else None
+    if key and any(key[1] in part.__pydantic_fields__ for part in parts):  # it names the key itself
         return f"{path}.{words}" if path else words
-    if not first["loc"]:  # a check of the whole component says it all
+    if not first["loc"]:  # a check of the whole component
         return f"{path}: {words}" if path else words
-    return f"{path} = {show(first['input'])}: {words}"
+    return f"{path} = {show(given)}: {words}"
 
 
 def _meant(holder: Any, key: str, rename: dict[str, str] | None) -> str:
@@ -355,22 +294,20 @@ def _choice(given: Any, known: Sequence[str]) -> str:
     return f"expected {one_of(known)}{near}"
 
 
-def _tag(given: Any, known: Sequence[str], path: str) -> str:
-    """What a tag should have been: of many names, where one can read them."""
+def _tag(given: Any, hint: Any, path: str) -> str:
+    """The tags that were expected; a hint at `--import` if the given one is like none of them."""
+    known = names_of(hint)
+    section = next((key for key in re.split(r"[.\[]", path) if key[:1].islower()), "")
+    names = f"one of {len(known)} names, which `mesokit explain {section}` lists"
+    if len(known) <= MANY:
+        names = one_of(known)
     if not isinstance(given, str):
-        return f"expected a text in quotes, {_names(known, path)}"
-    if len(known) <= MANY or nearest(given, known):
-        return _choice(given, known)
-    return f"expected {_names(known, path)}"
-
-
-def _own(given: Any, known: Sequence[str], hint: Any) -> str:
-    """How a part of the user's own comes to be known, for a name that is much like no other."""
-    if not _is_open(hint) or not isinstance(given, str):
-        return ""
-    if difflib.get_close_matches(given, known, 1, 0.6):
-        return ""
-    return "; your own parts need mesokit --import MODULE"
+        return f"expected a text in quotes, {names}"
+    several = len(known) > MANY and not nearest(given, known)
+    words = f"expected {names}" if several else _choice(given, known)
+    if _is_open(hint) and not difflib.get_close_matches(given, known, 1, 0.6):
+        words += "; your own parts need mesokit --import MODULE"
+    return words
 
 
 def _is_open(hint: Any) -> bool:
@@ -378,26 +315,12 @@ def _is_open(hint: Any) -> bool:
     return isinstance(hint, Family) or any(map(_is_open, typing.get_args(hint)))
 
 
-def _names(known: Sequence[str], path: str) -> str:
-    if len(known) <= MANY:
-        return one_of(known)
-    section = next((key for key in re.split(r"[.\[]", path) if key[:1].islower()), "")
-    return f"one of {len(known)} names, which `mesokit explain {section}` lists"
-
-
-def _names_key_of(here: Any, words: str) -> bool:
-    """Whether a message begins with a key of the component that it is about."""
-    key = re.match(r"(\w+)(\[#\d+\])?(\.| = |: )", words)
-    return key is not None and any(key[1] in c.__pydantic_fields__ for c in _members(here))
-
-
 def _walk(
     cls: Any, loc: Sequence[int | str], rename: dict[str, str], start: str
 ) -> tuple[str, Any, Any]:
-    """Key path as the user wrote it, the component that holds the last key, and its type."""
+    """Key path as the user wrote it, the component with the last key, and the type of the key."""
     if loc and isinstance(loc[0], int):  # a positional argument in Python
-        names = list(cls.__pydantic_fields__)
-        names = [n for n in names if n not in TAGS]
+        names = [name for name in cls.__pydantic_fields__ if name not in TAGS]
         loc = (names[loc[0]] if loc[0] < len(names) else "?", *loc[1:])
     path, here, holder = start, cls, cls
     for item in loc:
@@ -421,7 +344,7 @@ def _walk(
 
 
 def _hint_of(field: Any) -> Any:
-    """The type hint of a field, of which pydantic keeps the annotations apart."""
+    """The type hint of a field with its family, which pydantic keeps in the metadata."""
     families = [mark for mark in field.metadata if isinstance(mark, Family)]
     return Annotated[field.annotation, families[0]] if families else field.annotation
 

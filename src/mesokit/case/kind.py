@@ -17,12 +17,12 @@ NOT_COMPILED = ("[trajectory]", "[log]", "[units]", "[run]", "title")
 
 
 def has_run(case: Case) -> bool:
-    """Whether a case of this kind has run here with these kernels; if not, they are to compile."""
+    """True if a case of this kind has run here with these kernels; else they must be compiled."""
     return kept().find(_key(case)) is not None
 
 
 def note_run(case: Case) -> None:
-    """Remember that the kernels for this kind of case are kept, while what they contain stays."""
+    """Note that the kernels for this kind of case are kept, as long as their contents stay."""
     needs = needs_of_all()
     if needs is not None:
         entry = Entry(f"kind {case.run.method}", needs, b"", "")

@@ -6,10 +6,9 @@ A package brings a method by an entry point of the group `mesokit.methods`, whos
 
 import importlib
 import pathlib
-from collections.abc import Iterable
 from typing import Any
 
-METHODS = {  # what `run.method` says: the module that holds the METHOD
+METHODS = {  # value of `run.method`: the module that holds the METHOD
     "mpcd": "mesokit.method.mpcd.method",
     "brownian": "mesokit.method.brownian.method",
     "flock": "mesokit.method.flock.method",
@@ -35,21 +34,17 @@ def load(name: str) -> Any:
 
 def templates() -> dict[str, Any]:
     """The files that `mesokit new` starts from, by name: those in `templates/` of each method."""
-    files = [file for place in modules().values() for file in _templates_beside(place)]
-    return {file.name.removesuffix(".toml"): file for file in sorted(files, key=lambda f: f.name)}
-
-
-def _templates_beside(module: str) -> Iterable[Any]:
-    """The files in the folder `templates` beside a module, whose package is not imported."""
     import importlib.resources
     import importlib.util
 
-    package = module.rpartition(".")[0]
-    spec = importlib.util.find_spec(package) if package else None
-    if spec is None:
-        return ()
-    folder = importlib.resources.files(importlib.util.module_from_spec(spec)) / "templates"
-    return folder.iterdir() if folder.is_dir() else ()
+    files: list[Any] = []
+    for module in modules().values():
+        package = module.rpartition(".")[0]  # which is not imported
+        spec = importlib.util.find_spec(package) if package else None
+        if spec is not None:
+            folder = importlib.resources.files(importlib.util.module_from_spec(spec)) / "templates"
+            files += folder.iterdir() if folder.is_dir() else ()
+    return {file.name.removesuffix(".toml"): file for file in sorted(files, key=lambda f: f.name)}
 
 
 def examples() -> dict[str, Any]:

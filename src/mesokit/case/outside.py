@@ -1,4 +1,4 @@
-"""Parts of a case that mesokit does not bring: which they are, and whether they are here."""
+"""Parts of a case that are not of mesokit: their records, and a check that they are here."""
 
 import contextlib
 import dataclasses
@@ -14,7 +14,7 @@ from mesokit.errors import MesokitError, RunError
 
 
 def outside_parts(case: Any) -> list[dict[str, str]]:
-    """What a record says of each: family, name, class, and the distribution with its version.
+    """Record of each such part: family, name, class, and the distribution with its version.
 
     A part that a script defines has no distribution.
     """
@@ -28,13 +28,13 @@ def outside_parts(case: Any) -> list[dict[str, str]]:
 
 
 def is_outside(part: Any) -> bool:
-    """Whether mesokit does not bring the class of a part."""
+    """True if the class of a part is not of mesokit."""
     return type(part).__module__.split(".")[0] != "mesokit"
 
 
 @contextlib.contextmanager
 def blaming(case: Any) -> Iterator[None]:
-    """What goes wrong inside is a RunError that names the parts from outside, if there are any."""
+    """Errors inside become a RunError that names the parts from outside, if there are any."""
     try:
         yield
     except (MesokitError, OSError, MemoryError):
@@ -44,15 +44,12 @@ def blaming(case: Any) -> Iterator[None]:
         if not parts:
             raise
         names = ", ".join(f"{part['name']!r} ({part['class']})" for part in parts)
-        raise RunError(f"{names}, not of mesokit: {_gist(error)}") from error
-
-
-def _gist(error: Exception) -> str:
-    """One line of what may be the many of a compiler: the last that says what was wrong."""
-    text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))  # numba's are coloured where it can
-    lines = [f"{type(error).__name__}: {text}".splitlines()[0], *text.splitlines()]
-    found = [line for line in lines if re.search(r"\b(?!Typing)[A-Z][a-z]\w*Error: ", line)]
-    return " ".join((found or lines)[-1 if found else 0].split())
+        # Of many lines of a compiler, the last that names an error; numba's may be coloured.
+        text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
+        lines = [f"{type(error).__name__}: {text}".splitlines()[0], *text.splitlines()]
+        found = [line for line in lines if re.search(r"\b(?!Typing)[A-Z][a-z]\w*Error: ", line)]
+        gist = " ".join((found or lines)[-1 if found else 0].split())
+        raise RunError(f"{names}, not of mesokit: {gist}") from error
 
 
 def require_parts(record: Any) -> None:
@@ -79,7 +76,6 @@ def require_parts(record: Any) -> None:
 
 
 def _components(part: Any) -> Iterator[Any]:
-    """A component and all that it holds."""
     if isinstance(part, tuple):
         for element in part:
             yield from _components(element)

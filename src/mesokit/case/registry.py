@@ -31,7 +31,7 @@ class Family:
     """All parts of one sort, by the value of their tag.
 
     `title` is what messages call one of them, `tag` the key that names it in a case file, `group`
-    that of the entry points by which packages bring more; `functions` says what is to be done with
+    that of the entry points by which packages bring more; `functions` is a hint of what to do with
     a function.
     """
 
@@ -39,63 +39,56 @@ class Family:
         self.base, self.title, self.tag, self.group = base, title, tag, group
         self.functions = functions
         self.packages: list[str] = []  # the folders of mesokit that have its parts
-        self._known: dict[str, type[Any]] = {}  # the parts that are imported
+        self.known: dict[str, type[Any]] = {}  # the parts that are imported so far, by name
         self._described = False  # while its schema is made
 
     @property
     def parts(self) -> dict[str, type[Any]]:
         """All parts by name: those of mesokit's folders in alphabetical order, then others."""
         for package in self.packages:
-            _import_all(package)
-        self._known = dict(sorted(self._known.items(), key=self._place))
-        return self._known
-
-    def known(self) -> Iterable[type[Any]]:
-        """The parts that are imported so far."""
-        return self._known.values()
-
-    def _place(self, item: tuple[str, type[Any]]) -> tuple[bool, str]:
-        name, part = item
-        own = part.__module__.rpartition(".")[0] in self.packages
-        return not own, name if own else ""
+            for module in sorted(_modules(package)):
+                importlib.import_module(f"{package}.{module}")
+        own = [n for n, p in self.known.items() if p.__module__.rpartition(".")[0] in self.packages]
+        self.known = {n: self.known[n] for n in sorted(own)} | self.known
+        return self.known
 
     def add(self, name: str, part: type) -> None:
         """Register a part. Raises CaseError if another has its name."""
-        known = self._known.get(name)
+        known = self.known.get(name)
         if known is not None and address(known) != address(part):
             raise CaseError(
                 f"{address(part)}: {self.title} {name!r} is {address(known)} already; choose "
                 f"another {self.tag}"
             )
-        self._known[name] = part
+        self.known[name] = part
 
     def names(self) -> list[str]:
-        """The names that a case file can say, those that packages bring included."""
+        """Names for case files, those of parts of installed packages included."""
         brought = [e.name for e in self._entries() if self._may_have(e)]
         return list(dict.fromkeys([*self.parts, *brought]))
 
     def find(self, name: str) -> type | None:
         """The part of that name, None if there is none. Raises CaseError if it cannot be loaded."""
-        if name not in self._known:
+        if name not in self.known:
             self._import(name)
-        if name not in self._known and name not in self.parts:
+        if name not in self.known and name not in self.parts:
             self._load(name)
-        if name not in self._known:  # a part of another method: the case is told which ones it has
+        if name not in self.known:  # a part of another method: its check names those of the case
             for method in METHODS.values():
                 importlib.import_module(method)
             self._import(name)
-        return self._known.get(name)
+        return self.known.get(name)
 
     def _import(self, name: str) -> None:
         """Import the file that is named after a part; a file may have parts of other names too."""
         module = name.replace("-", "_").replace("+", "_plus_")
         for package in self.packages:
-            if name not in self._known and module in _modules(package):
+            if name not in self.known and module in _modules(package):
                 importlib.import_module(f"{package}.{module}")
 
     def brought_by(self, name: str) -> Mapping[str, str]:
         """Distribution and version that have an entry point for a part; {} for a script's."""
-        place = address(self._known[name])
+        place = address(self.known[name])
         for entry in self._entries():
             if entry.name == name and entry.value.replace(" ", "") == place and entry.dist:
                 return {"distribution": entry.dist.name, "version": entry.dist.version}
@@ -110,7 +103,9 @@ class Family:
         entries = [entry for entry in self._entries() if entry.name == name]
         if not entries:
             return
-        sources = sorted({_source(entry) for entry in entries})
+        sources = sorted(
+            {f"{e.dist.name} {e.dist.version}" if e.dist else e.value for e in entries}
+        )
         if len(sources) > 1:
             raise CaseError(
                 f"{self.title} {name!r} is brought by {' and by '.join(sources)}; remove one"
@@ -124,9 +119,9 @@ class Family:
             raise CaseError(
                 f"{self.title} {name!r} of {sources[0]} cannot be loaded: {reason}"
             ) from error
-        part = self._known.get(name)
+        part = self.known.get(name)
         if part is not None and (missing := sorted(getattr(part, "__abstractmethods__", ()))):
-            del self._known[name]
+            del self.known[name]
             raise CaseError(
                 f"{self.title} {name!r} of {sources[0]}: {address(part)} lacks {', '.join(missing)}"
             )
@@ -137,7 +132,7 @@ class Family:
             )
 
     def _may_have(self, entry: metadata.EntryPoint) -> bool:
-        """Whether no family of the same group is known to have the part."""
+        """True if no family of the same group has the part."""
         others = [f for f in FAMILIES.values() if f.group == self.group]
         return not any(entry.name in family.parts for family in others)
 
@@ -155,27 +150,24 @@ class Family:
 
         Within a part that has another of its family in it, only those that have none.
         """
-        parts: dict[Any, Any] = {name: self.find(name) for name in self.names()}
-        within, self._described = self._described, True
-        known = {
-            name: part.__pydantic_core_schema__
-            for name, part in parts.items()
-            if part and not (within and self._in(part))
-        }
+        within = self._described
+        known: dict[Any, Any] = {}
+        for name in self.names():
+            part: Any = self.find(name)
+            fields = part.__pydantic_fields__.values() if part else ()
+            nested = any(self in (field.annotation, *field.metadata) for field in fields)
+            if part and not (within and nested):
+                known[name] = part.__pydantic_core_schema__
+        self._described = True
         try:
             return handler(core_schema.tagged_union_schema(known, self.tag))
         finally:
             self._described = within
 
-    def _in(self, part: Any) -> bool:
-        """Whether a part has another of this family in it."""
-        fields = part.__pydantic_fields__.values()
-        return any(self in (field.annotation, *field.metadata) for field in fields)
-
     def _validated(self, value: Any, info: ValidationInfo) -> Any:
         """A part as it is, or built from a table that names it."""
         if isinstance(value, self.base):
-            if type(value) not in self._known.values():
+            if type(value) not in self.known.values():
                 raise PydanticCustomError(
                     "part", f"{address(type(value))} lacks @component, or was defined anew"
                 )
@@ -207,9 +199,15 @@ class Family:
         try:
             return part.__pydantic_validator__.validate_python(value, context=info.context)  # type: ignore[attr-defined]
         except ValidationError as error:
-            raise ValidationError.from_exception_data(
-                error.title, [_inside(name, entry) for entry in error.errors()]
-            ) from None
+            under_name: list[InitErrorDetails] = [
+                {
+                    "type": PydanticCustomError(entry["type"], entry["msg"], entry.get("ctx")),
+                    "loc": (name, *entry["loc"]),
+                    "input": entry["input"],
+                }
+                for entry in error.errors()
+            ]
+            raise ValidationError.from_exception_data(error.title, under_name) from None
 
 
 FAMILIES: dict[type, Family] = {}
@@ -258,27 +256,10 @@ def parts_in(package: str, **lists: type[Any]) -> Callable[[str], tuple[type[Any
 
 @functools.cache
 def _modules(package: str) -> frozenset[str]:
-    """The names of the files and folders in a package."""
     path = importlib.import_module(package).__path__
     return frozenset(module.name for module in pkgutil.iter_modules(path))
 
 
-@functools.cache
-def _import_all(package: str) -> None:
-    for module in sorted(_modules(package)):
-        importlib.import_module(f"{package}.{module}")
-
-
 def address(part: type) -> str:
-    """Module and name of a class, as an entry point says it."""
+    """Module and name of a class, as in an entry point."""
     return f"{part.__module__}:{part.__qualname__}"
-
-
-def _source(entry: metadata.EntryPoint) -> str:
-    return f"{entry.dist.name} {entry.dist.version}" if entry.dist else entry.value
-
-
-def _inside(name: str, entry: Any) -> InitErrorDetails:
-    """The error of a part, under its name."""
-    kind = PydanticCustomError(entry["type"], entry["msg"], entry.get("ctx"))
-    return {"type": kind, "loc": (name, *entry["loc"]), "input": entry["input"]}

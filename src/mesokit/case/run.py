@@ -1,4 +1,4 @@
-"""How long a run is, and how often it is made safe."""
+"""How long a run is, how often it is made safe, and its log."""
 
 from pydantic import field_validator
 
@@ -49,3 +49,17 @@ class Run:
             hint = nearest(name, known)
             raise ValueError(f"expected {one_of(known)}, or what an installed package brings{hint}")
         return name
+
+
+@component
+class Log:
+    """Numbers in time: a line on the screen and in the file `log.csv` of the run's folder.
+
+    Beside what the method knows, such as `temperature` and `velocity x`, a column may be what an
+    observable has found so far, as `velocity-profile.viscosity`; its error is a column of its own.
+    """
+
+    every: int = param(doc="steps between two lines, from step 0 of the warm-up on", ge=1)
+    columns: tuple[str, ...] = param(
+        (), doc="what is written with step and time (the usual columns of the method unless said)"
+    )

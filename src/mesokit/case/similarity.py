@@ -60,20 +60,17 @@ class Law(NamedTuple):
 
 LAWS = {
     "Reynolds": Law(
-        lambda f, p: f.speed * f.size * p.density / p.dynamic_viscosity,
-        "inertia over friction",
+        lambda f, p: f.speed * f.size * p.density / p.dynamic_viscosity, "inertia over friction"
     ),
     "Mach": Law(
-        lambda f, p: f.speed / p.sound_speed,
-        "flow over sound; nothing is compressed below 0.1",
+        lambda f, p: f.speed / p.sound_speed, "flow over sound; nothing is compressed below 0.1"
     ),
     "Schmidt": Law(
         lambda f, p: p.dynamic_viscosity / (p.density * p.diffusion),
         "diffusion of momentum over that of particles; no units change it",
     ),
     "Peclet": Law(
-        lambda f, p: f.speed * f.size / p.diffusion,
-        "flow over diffusion of the fluid's particles",
+        lambda f, p: f.speed * f.size / p.diffusion, "flow over diffusion of the fluid's particles"
     ),
     "colloid Peclet": Law(
         lambda f, p: 6 * math.pi * p.dynamic_viscosity * f.cell * f.speed * f.size / p.kT,
@@ -85,8 +82,7 @@ LAWS = {
         "thermal velocity of a cell of fluid over the flow",
     ),
     "Knudsen": Law(
-        lambda f, p: p.mean_free_path / f.size,
-        "mean free path over size; a continuum below 0.1",
+        lambda f, p: p.mean_free_path / f.size, "mean free path over size; a continuum below 0.1"
     ),
 }
 
@@ -119,10 +115,7 @@ def compare(
         if dimension in law.dimensions:
             here, there = law.formula(*simulated), law.formula(*real)
             known = flows or name == "Schmidt"
-            values = _known(here if known else math.nan), _known(there if known else math.nan)
-            found.append(Number(name, *values, _known(there / here), law.meaning))
+            values = here if known else math.nan, there if known else math.nan, there / here
+            one, other, factor = (x if math.isfinite(x) else None for x in values)
+            found.append(Number(name, one, other, factor, law.meaning))
     return tuple(found)
-
-
-def _known(x: float) -> float | None:
-    return x if math.isfinite(x) else None

@@ -99,7 +99,7 @@ def _step(here: Any, part: str, path: str) -> Any:
 
 
 def _which(path: str, items: list[Any]) -> CaseError:
-    """The last part of the path should have said which item of a list is meant."""
+    """The error of a path whose last part does not choose an item of a list."""
     start, _, last = path.rpartition(".")
     example = f"{start}.1" if last.isdecimal() else f"{start}.1.{last}"
     known = f"a number from 1 to {len(items)}" if len(items) != 1 else "the number 1"
@@ -115,8 +115,14 @@ def write(case: Any, keys: Mapping[str, str], folder: Path | None = None) -> str
     Files in the folder that the file is for are named without it: they may be moved together.
     """
     title = [f"title = {_value(case.title)}\n"] if case.title else []
-    tables = [_table(keys.get(f.name, f.name), getattr(case, f.name)) for f in _fields(case)]
-    text = "\n".join([*title, *filter(None, tables)])
+    tables = []
+    for field in _fields(case):
+        value, key = getattr(case, field.name), keys.get(field.name, field.name)
+        if isinstance(value, tuple):
+            tables += [f"[[{key}]]\n{_lines(item)}" for item in value]
+        elif is_component(type(value)):
+            tables.append(f"[{key}]\n{_lines(value)}")
+    text = "\n".join([*title, *tables])
     if folder is None:
         return text
     return text.replace(f"file = {_value(f'{folder.resolve()}{os.sep}')[:-1]}", 'file = "')
@@ -127,30 +133,21 @@ def given(case: Any, keys: Mapping[str, str]) -> list[tuple[str, str]]:
     rows = []
     for field in _fields(case):
         value, key = getattr(case, field.name), keys.get(field.name, field.name)
-        parts = value if isinstance(value, tuple) else (value,)
-        rows += [(key, _differing(part)) for part in parts if is_component(type(part))]
+        for part in value if isinstance(value, tuple) else (value,):
+            known = getattr(type(part), "__pydantic_fields__", {})
+            texts = (
+                f"{name} = {text}"
+                for name, text in (_entries(part) if known else ())
+                if name in TAGS
+                or getattr(part, name) != known[name].get_default(call_default_factory=True)
+            )
+            rows.append((key, ", ".join(texts)))
     return [(key, text) for key, text in rows if text]
 
 
-def _differing(part: Any) -> str:
-    """The tag of a component, and its values that are not the defaults."""
-    fields = type(part).__pydantic_fields__
-    return ", ".join(
-        f"{key} = {text}"
-        for key, text in _entries(part)
-        if key in TAGS or getattr(part, key) != fields[key].get_default(call_default_factory=True)
-    )
-
-
 def _fields(part: Any) -> list[Any]:
-    """Fields in the order of a file, the tag (rule, shape, quantity) first."""
+    """Fields in the order of a file, the tag first."""
     return sorted(dataclasses.fields(part), key=lambda f: f.name not in TAGS)
-
-
-def _table(key: str, value: Any) -> str:
-    if isinstance(value, tuple):
-        return "\n".join(f"[[{key}]]\n{_lines(item)}" for item in value)
-    return f"[{key}]\n{_lines(value)}" if is_component(type(value)) else ""
 
 
 def _lines(part: Any) -> str:

@@ -29,7 +29,7 @@ class Kind(NamedTuple):
 class Group(NamedTuple):
     """Particles with consecutive numbers, such as a fluid or its solutes, kind after kind.
 
-    `has` is what an engine tells of each: quantities that trajectories may hold; "mass" and
+    `has` are quantities of each in an engine: those that trajectories may hold; "mass" and
     "diameter" where each has its own; "heading" where the direction of a velocity at one time is
     what pictures show. Sites of a lattice are a group that has "site", the number of the state of
     each: `lattice` is how many there are along each axis, numbered along the last one first, and
@@ -105,7 +105,7 @@ def kinds_of(groups: Sequence[Group], ids: NDArray[np.int64]) -> NDArray[np.int6
 
 
 def names_and_diameters(groups: Sequence[Group]) -> tuple[tuple[str, ...], NDArray[np.float64]]:
-    """What other programs are told of each kind of particles: a name, and how large it is drawn.
+    """Name of each kind of particles for other programs, and the diameter in which it is drawn.
 
     Names are never single letters, which stand for chemical elements.
 
@@ -124,7 +124,7 @@ def names_and_diameters(groups: Sequence[Group]) -> tuple[tuple[str, ...], NDArr
 
 
 def components(field: str, dimension: int) -> int:
-    """How many numbers a field has for each particle: disks spin about one axis, spheres about 3.
+    """Number of components of a field of each particle: disks spin about one axis, spheres about 3.
 
     >>> [components(field, 2) for field in ("position", "spin", "id")], components("spin", 3)
     ([2, 1, 1], 3)
@@ -137,7 +137,7 @@ def components(field: str, dimension: int) -> int:
 def stored_bytes(
     trajectory: Trajectory | None, groups: Sequence[Group], dimension: int, steps: int
 ) -> int:
-    """About how many bytes a trajectory takes in a file after so many steps."""
+    """Estimated bytes of the file of a trajectory after so many steps."""
     if trajectory is None:
         return 0
     number = 4 if trajectory.precision == "float32" else 8

@@ -1,4 +1,4 @@
-"""What any method warns of: runs that leave nothing, or more than the machine can hold."""
+"""Warnings of all methods: runs that leave nothing, or more than the machine can hold."""
 
 import dataclasses
 import os
@@ -14,7 +14,7 @@ from mesokit.errors import CaseError
 
 
 def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
-    """What one should know before a run that takes so many bytes of memory and of disk."""
+    """Warnings before a run that takes so many bytes of memory and of disk."""
     run = case.run
     if not case.observe and case.trajectory is None:
         yield "no [[observe]] and no [trajectory]: the run will leave nothing but its last state"
@@ -26,7 +26,9 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
                 f"{observable.label} takes {samples}"
             )
         else:
-            longest, usual = getattr(observable, "max_lag", None), _usual(observable, "max_lag")
+            longest = getattr(observable, "max_lag", None)
+            defaults = {field.name: field.default for field in dataclasses.fields(observable)}
+            usual = getattr(defaults.get("max_lag"), "default", defaults.get("max_lag"))
             if longest is not None and longest != usual and longest > run.steps:
                 yield (
                     f"observe[#{i + 1}].max_lag = {longest}: more than run.steps = {run.steps}, "
@@ -53,7 +55,7 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
 
 
 def has_memory(needed: float) -> bool:
-    """Whether this machine, and what the system grants this process, has so many bytes."""
+    """True if this machine, and the limit of this process, have so many bytes."""
     available = _machine_memory()
     return not available or needed <= 0.9 * available
 
@@ -66,12 +68,6 @@ def require_memory(key: str, given: Any, needed: float) -> None:
             f"{key} = {show(given)}: needs {size_text(needed)} of memory, this machine has "
             f"{size_text(available)}; expected less"
         )
-
-
-def _usual(part: Any, name: str) -> Any:
-    """The default of a parameter, None without one."""
-    defaults = {field.name: field.default for field in dataclasses.fields(part)}
-    return getattr(defaults.get(name), "default", defaults.get(name))
 
 
 def _machine_memory() -> int | None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.case.component import FromContents
+from mesokit.case.given.file import FromContents
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.shape.sampled import Sampled
 from mesokit.geometry.solids.solids import Solids

@@ -20,7 +20,6 @@ class Bending(Angle):
         return self.kappa
 
     def kernel(self) -> Cosine:
-        """Parameters for the scalar function below."""
         return Cosine(self.kappa)
 
 

@@ -19,7 +19,6 @@ class FENE(Bond):
 
     @property
     def longest(self) -> float:
-        """Length that the bond cannot reach."""
         return self.R0
 
     def kernel(self) -> Finite:
@@ -39,6 +38,4 @@ def _(potential, square):
     return -0.5 * potential.k * potential.limit * math.log(left), -potential.k / left
 
 
-@breaks.register(Finite)
-def _(potential, square):
-    return square >= potential.limit
+breaks.register(Finite)(lambda potential, square: square >= potential.limit)

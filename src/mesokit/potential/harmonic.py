@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 from mesokit import theory
 from mesokit.case.component import component, param, tag
-from mesokit.potential.protocol import Bond, breaks, central
+from mesokit.potential.protocol import Bond, central
 
 
 @component
@@ -22,14 +22,12 @@ class Harmonic(Bond):
 
     @property
     def longest(self) -> float:
-        """Length that the bond cannot reach."""
         return math.inf
 
     def kernel(self) -> Square:
         return Square(self.K)
 
     def spring(self) -> theory.Spring:
-        """The spring without a length of its own that it is."""
         return theory.spring(K=self.K)
 
 
@@ -43,14 +41,12 @@ class Spring(Bond):
 
     @property
     def longest(self) -> float:
-        """Length that the bond cannot reach."""
         return math.inf
 
     def kernel(self) -> AboutLength:
         return AboutLength(self.k, self.length)
 
     def spring(self) -> theory.Spring | None:
-        """The spring without a length of its own that it is, if it is one."""
         return theory.spring(k=self.k) if self.length == 0 else None
 
 
@@ -70,9 +66,7 @@ class AboutLength(NamedTuple):
 NO_LENGTH = 1e-12  # below this a bond has no direction, and pulls nowhere
 
 
-@central.register(Square)
-def _(potential, square):
-    return potential.K * square, -2.0 * potential.K
+central.register(Square)(lambda potential, square: (potential.K * square, -2.0 * potential.K))
 
 
 @central.register(AboutLength)
@@ -80,8 +74,3 @@ def _(potential, square):
     r = math.sqrt(square)
     beyond = r - potential.length
     return 0.5 * potential.k * beyond * beyond, -potential.k * beyond / max(r, NO_LENGTH)
-
-
-@breaks.register(Square, AboutLength)
-def _(potential, square):
-    return False

@@ -1,4 +1,4 @@
-"""The Lennard-Jones potential, cut off where it is told to be."""
+"""The Lennard-Jones potential with a cut-off."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from typing import Literal, NamedTuple
 
 from mesokit.case.component import component, param, tag
-from mesokit.potential.protocol import Pair, breaks, central
+from mesokit.potential.protocol import Pair, central
 
 
 @component
@@ -25,7 +25,6 @@ class LennardJones(Pair):
 
     @property
     def diameter(self) -> float:
-        """How large a bead is."""
         return self.sigma
 
     def mixed(self, other: Pair) -> LennardJones | None:
@@ -38,7 +37,6 @@ class LennardJones(Pair):
         return LennardJones(*both, self.cutoff, self.shift)
 
     def kernel(self) -> TwelveSix:
-        """Parameters for the scalar function below."""
         return twelve_six(self.epsilon, self.sigma, self.cutoff, self.shift)
 
 
@@ -79,8 +77,3 @@ def _(potential, square):
     force_over_r = 6.0 * potential.four * sixth * (2.0 * sixth - 1.0) * inverse / potential.square
     near = square < potential.limit
     return (energy if near else 0.0), (force_over_r if near else 0.0)
-
-
-@breaks.register(TwelveSix)
-def _(potential, square):
-    return False

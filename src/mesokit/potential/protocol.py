@@ -1,4 +1,4 @@
-"""What a potential answers: its energy and its force, both from one place.
+"""Protocol of potentials: energy and force, both from one place.
 
 The first argument is the potential's NamedTuple of parameters; its class picks the implementation.
 """
@@ -29,7 +29,7 @@ class Bond(ABC):
         """Parameters for the scalar functions below."""
 
     def spring(self) -> theory.Spring | None:
-        """The spring without a length of its own that it is, if it is one: what theory asks."""
+        """The spring without a length of its own that it is, for theory; None for others."""
         return None
 
 
@@ -55,7 +55,7 @@ class Pair(ABC):
         """Parameters for the scalar functions below."""
 
     def mixed(self, other: Pair) -> Pair | None:
-        """What acts between beads of this and of another potential; None where no rule says."""
+        """Potential of beads of this and of another potential; None without a rule."""
         return None
 
 

@@ -15,7 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.scalar.jit import by_type
 from mesokit.scalar.pointer import address, real, word
 
-TABLES: dict[str, NDArray[Any]] = {}  # for good: kernels know them by address
+TABLES: dict[str, NDArray[Any]] = {}  # for good: kernels have their addresses
 NONE = -1  # the row of a potential of another class
 
 

@@ -12,9 +12,10 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import FileName, FromContents, component, param, show, tag
+from mesokit.case.component import component, param, show, tag
+from mesokit.case.given.file import FileName, FromContents
 from mesokit.errors import CaseError
-from mesokit.potential.protocol import Pair, breaks, central
+from mesokit.potential.protocol import Pair, central
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.pointer import address, real
 
@@ -53,11 +54,7 @@ def rows_of(text: str, section: str | None = None) -> Floats:
     if section is not None and section not in sections:
         known = ", ".join(str(name) for name in sections if name is not None) or "none"
         raise ValueError(f"no section {section!r}; there are {known}")
-    return _checked(sections[next(iter(sections)) if section is None else section])
-
-
-def _checked(rows: list[tuple[int, list[float]]]) -> Floats:
-    """As an array. Raises ValueError for the first row that is wrong."""
+    rows = sections[next(iter(sections)) if section is None else section]
     width = len(rows[0][1])
     for (number, row), (_, before) in zip(rows, [(0, [0.0]), *rows], strict=False):
         start = f"line {number}:"
@@ -71,14 +68,9 @@ def _checked(rows: list[tuple[int, list[float]]]) -> Floats:
     if len(rows) < FEWEST:
         raise ValueError(f"{len(rows)} rows; expected {FEWEST} or more")
     values = np.array([row for _, row in rows])
-    if width == 3:
-        _check_forces(values, [number for number, _ in rows])
-    return values
-
-
-def _check_forces(values: Floats, lines: list[int]) -> None:
-    """That the force is minus the slope of the energy. Raises ValueError for the worst row."""
-    r, energy, force = values.T
+    if width == 2:
+        return values
+    r, energy, force = values.T  # which must be minus the slope of the energy
     work = -np.diff(r) * (force[1:] + force[:-1]) / 2.0
     change = np.diff(energy)
     off = np.abs(work - change)
@@ -86,14 +78,15 @@ def _check_forces(values: Floats, lines: list[int]) -> None:
     worst = int(np.argmax(off / np.maximum(allowed, 1e-300)))
     if off[worst] > allowed[worst]:
         raise ValueError(
-            f"line {lines[worst + 1]}: from the row before U changes by {change[worst]:g}, by the "
-            f"forces it would be {work[worst]:g}; expected F = -dU/dr"
+            f"line {rows[worst + 1][0]}: from the row before U changes by {change[worst]:g}, by "
+            f"the forces it would be {work[worst]:g}; expected F = -dU/dr"
         )
+    return values
 
 
 Floats = NDArray[np.float64]
 INTERVALS = 4096  # in the square of the distance, of the table that compiled code reads
-TABLES: dict[str, Floats] = {}  # such tables, for good: kernels know them by address
+TABLES: dict[str, Floats] = {}  # such tables, for good: kernels have their addresses
 
 
 @component
@@ -177,10 +170,9 @@ class Table(FromContents, Pair):
         """What the file holds: r, U and maybe F. Raises CaseError."""
         try:
             return rows_of(self.contents.decode(), self.section)
-        except UnicodeDecodeError:
-            raise self.wrong("expected a text file") from None
         except ValueError as error:
-            raise self.wrong(str(error)) from None
+            decoded = not isinstance(error, UnicodeDecodeError)
+            raise self.wrong(str(error) if decoded else "expected a text file") from None
 
     @property
     def reach(self) -> float:
@@ -206,10 +198,8 @@ class Table(FromContents, Pair):
 
         r, energy, *force = self.rows.T
         lift = energy[-1] if self.shift else 0.0
-        if force:
-            curve = CubicHermiteSpline(r, energy - lift, -force[0])
-        else:
-            curve = CubicSpline(r, energy - lift)
+        level = energy - lift
+        curve = CubicHermiteSpline(r, level, -force[0]) if force else CubicSpline(r, level)
         squares = np.linspace(r[0] ** 2, r[-1] ** 2, INTERVALS + 1)
         places = np.clip(np.sqrt(squares), r[0], r[-1])
         value = curve(places)
@@ -219,7 +209,6 @@ class Table(FromContents, Pair):
         return np.column_stack([value[:-1], first, rise - first - third, third])
 
     def kernel(self) -> Cubics:
-        """Parameters for the scalar function below."""
         near, far = self.rows[0, 0] ** 2, self.rows[-1, 0] ** 2
         digest = hashlib.sha256(self.cubics.tobytes()).hexdigest()
         return Cubics(
@@ -239,7 +228,7 @@ class Cubics(NamedTuple):
 
 @scalar
 def number(table, index):
-    """A number of a table; compiled, so that it may be asked from plain Python too."""
+    """A number of a table; compiled, so that plain Python can call it too."""
     return real(table, index)
 
 
@@ -248,19 +237,11 @@ def _(potential, square):
     place = min(max((square - potential.near) * potential.per, 0.0), INTERVALS - 1e-9)
     first = int(place)
     t, c = place - first, 4 * first
-    b, quadratic, cubic = (
-        number(potential.table, c + 1),
-        number(potential.table, c + 2),
-        number(potential.table, c + 3),
-    )
+    b, quadratic = number(potential.table, c + 1), number(potential.table, c + 2)
+    cubic = number(potential.table, c + 3)
     energy = number(potential.table, c) + t * (b + t * (quadratic + t * cubic))
     force_over_r = -2.0 * potential.per * (b + t * (2.0 * quadratic + t * 3.0 * cubic))
     if square < potential.near:
         energy -= 0.5 * force_over_r * (square - potential.near)
     inside = square < potential.far
     return (energy if inside else 0.0), (force_over_r if inside else 0.0)
-
-
-@breaks.register(Cubics)
-def _(potential, square):
-    return False

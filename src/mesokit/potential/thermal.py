@@ -26,7 +26,7 @@ class Lengths(NamedTuple):
 
 def lengths(kernels: Sequence[Any], dimension: int, kT: float, longest: float) -> Lengths:
     """Boltzmann's distribution of the length of a bond whose potentials add up."""
-    # kept, as it is asked for bond by bond; tuples of the same numbers are the same key
+    # kept for the next bond; kernels with the same numbers differ by their classes
     return _lengths(tuple(map(type, kernels)), tuple(kernels), dimension, kT, longest)
 
 

@@ -26,7 +26,6 @@ class WCA(Pair):
 
     @property
     def diameter(self) -> float:
-        """How large a bead is."""
         return self.sigma
 
     def mixed(self, other: Pair) -> WCA | None:
@@ -40,5 +39,4 @@ class WCA(Pair):
         return WCA(*lorentz_berthelot((self.epsilon, self.sigma), (other.epsilon, other.sigma)))
 
     def kernel(self) -> TwelveSix:
-        """Parameters for the scalar function of the Lennard-Jones potential."""
         return twelve_six(self.epsilon, self.sigma, 2.0 ** (1.0 / 6.0), True)

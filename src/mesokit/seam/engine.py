@@ -1,4 +1,4 @@
-"""What an engine answers: the verbs of a run, and what observables may ask of its particles.
+"""Protocols of engines: the verbs of a run, and the readings of observables.
 
 An engine holds the state of a simulation in memory and moves it on. Each method of simulation
 (`method/`) has one or more of them: an MPCD fluid has one for the threads of a CPU. All
@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from mesokit.statistics.tally import Tally
 
-Array = NDArray[np.floating[Any]]
+Array = NDArray[np.floating]
 Integers = NDArray[np.int64]
 State = dict[str, NDArray[Any]]
 
 
 class Clock(Protocol):
-    """How far an engine has come."""
+    """Step and time of an engine."""
 
     @property
     def step(self) -> int: ...
@@ -28,7 +28,7 @@ class Clock(Protocol):
 
 
 class Particles(Clock, Protocol):
-    """What observables and trajectories may ask of an engine of particles; d is the dimension.
+    """Readings of an engine of particles, for observables and trajectories; d is the dimension.
 
     `positions` (n, d) lie in the box, or where the particles have really gone to if `unwrapped`;
     `images` (n, d) counts the boxes between the two. `ids` picks some particles (all unless said).
@@ -43,13 +43,13 @@ class Particles(Clock, Protocol):
 
 
 class Sites(Clock, Protocol):
-    """What observables and trajectories may ask of an engine of a lattice.
+    """Readings of an engine of a lattice, for observables and trajectories.
 
     `sites` (n,) are the numbers of their states, of some or all, numbered along the last axis of
     the box first.
     """
 
-    def sites(self, ids: Integers | None = None) -> NDArray[np.integer[Any]]: ...
+    def sites(self, ids: Integers | None = None) -> NDArray[np.integer]: ...
 
 
 class Interrupted(Exception):
@@ -58,7 +58,7 @@ class Interrupted(Exception):
 
 
 class Engine(Clock, Protocol):
-    """What a simulation asks of an engine, whatever it holds."""
+    """What a simulation uses of an engine, whatever it holds."""
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps, in compiled code; 0 only loads or compiles it.
@@ -105,11 +105,11 @@ class Some(Protocol):
 
 
 # bins (m,) of whatever counts, and terms (m,) of each kind to add up in these
-Terms = tuple[NDArray[Any], Sequence[NDArray[Any]]]
+Terms = tuple[NDArray[np.integer], Sequence[NDArray[np.number | np.bool_]]]
 
 
 class RunningFluid(Particles, Protocol):
-    """What observables may ask of an engine whose particles are a fluid.
+    """Readings of an engine whose particles are a fluid, for observables.
 
     `totals` gives number, momentum (d,) and kinetic energy of all particles. `moments` gives
     number, mass (*bins), momentum (d, *bins) and sum of m v^2 (*bins) in equal bins over the
@@ -124,7 +124,7 @@ class RunningFluid(Particles, Protocol):
     `bond_vectors` (bonds, d) lead from the first to the second particle of each bond, in molecules
     of the fluid and then in solutes.
     `whole_positions` are those of whole molecules, each bead next to its first, whatever images
-    they lie in: under shear `unwrapped` positions do not know how far images have slid.
+    they lie in: under shear `unwrapped` positions leave out how far images have slid.
     `stress` holds "kinetic", "collisional" and, of molecules, "bond" (d, d) of the last step if an
     observer due at it declares `measures = ("stress",)`. `wall_impulse` (surfaces, d + 1 or d + 3)
     is the momentum and angular momentum given to the lower and the upper plate of a slit, or to
@@ -148,11 +148,7 @@ class RunningFluid(Particles, Protocol):
         last: int | None = None,
     ) -> Array: ...
     def sums_of_bonds(
-        self,
-        of: Callable[[Integers, Array], Terms],
-        bins: int,
-        units: Sequence[float],
-        kind: slice,
+        self, of: Callable[[Integers, Array], Terms], bins: int, units: Sequence[float], kind: slice
     ) -> Array: ...
     def velocities(self, ids: Integers | None = None) -> Array: ...
     def masses(self, ids: Integers | None = None) -> Array: ...
@@ -170,7 +166,7 @@ class RunningFluid(Particles, Protocol):
 
 
 class RunningSpheres(Particles, Protocol):
-    """What observables may ask of an engine of disks or spheres.
+    """Readings of an engine of disks or spheres, for observables.
 
     `totals` and `moments` are as of a fluid, the latter of all or some. `spins` (n,) in 2D or (n,
     3) in 3D are angular velocities; `energies` tells "translation", "rotation" and "potential".
@@ -191,7 +187,7 @@ class RunningSpheres(Particles, Protocol):
 
 
 class CollidingSpheres(RunningSpheres, Protocol):
-    """What observables may ask besides of an engine of event-driven dynamics.
+    """More readings of an engine of event-driven dynamics.
 
     `collisions` counts since the warm-up those of pairs, those with walls, and how many of them
     were elastic for following too soon; `virial` is the sum of r.dp over those of pairs. For

@@ -1,4 +1,4 @@
-"""Numbers drawn from block sums, with error bars that know of all correlations.
+"""Numbers computed from block sums, with error bars that include all correlations.
 
 A profile is measured together: neighbouring bins rise and fall with the same eddies, so the error
 of a fitted number is not that of independent bins. What each block of time contributes to the
@@ -8,7 +8,7 @@ done on what comes out of it.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from mesokit.statistics import (
     independent_error,
 )
 
-Array = NDArray[np.floating[Any]]
+Array = NDArray[np.floating]
 SURE = 2.0  # standard errors from zero, within which nothing is divided by a number
 SEEN = 1 / 16  # of the run: blocks of time, eight at least, hold two products that span it
 DIVISOR = "its divisor is within two standard errors of zero"
@@ -70,26 +70,21 @@ class Estimate(NamedTuple):
 
     def linear(self, matrix: Array) -> Estimate:
         """The linear combinations `matrix` (p, n) of a value of shape (n,)."""
+        spans = self.spans
+        if spans is not None:  # (p,): each value is weighted by the scatter that it adds
+            added = np.abs(matrix) * np.sqrt((self.residuals**2).sum(axis=0))
+            total = added.sum(axis=1)
+            spans = np.asarray(added @ spans / np.where(total > 0, total, 1.0))
         return self._replace(
             value=matrix @ self.value,
             residuals=self.residuals @ matrix.T,
             weights=per_block(self.weights),
             in_time=None if self.in_time is None else self.in_time.linear(matrix),
-            spans=None if self.spans is None else self.mean_spans(matrix),
+            spans=spans,
         )
 
-    def mean_spans(self, matrix: Array) -> Array:
-        """Spans (p,) of linear combinations: each value weighs by the scatter that it adds."""
-        assert self.spans is not None
-        added = np.abs(matrix) * np.sqrt((self.residuals**2).sum(axis=0))
-        total = added.sum(axis=1)
-        return np.asarray(added @ self.spans / np.where(total > 0, total, 1.0))
-
     def scalar(
-        self,
-        value: float | Array,
-        gradient: Array,
-        over: tuple[float | Array, Array] | None = None,
+        self, value: float | Array, gradient: Array, over: tuple[float | Array, Array] | None = None
     ) -> tuple[float, float]:
         """A function of the value (n,), given what it is and its gradient: value and error.
 
@@ -139,7 +134,7 @@ def fit(estimate: Estimate, basis: Array, weight: Array) -> Estimate:
 
 
 def noted(value: float, *notes: str) -> str:
-    """The notes of a number as one, the first of which says why a quotient has no value.
+    """The notes of a number as one, the first of which is the reason if a quotient has no value.
 
     >>> noted(0.7, "", "steady"), noted(np.nan, "steady")
     ('steady', 'its divisor is within two standard errors of zero; steady')

@@ -1,4 +1,4 @@
-"""What a method of simulation is: all that the rest of the package asks of it."""
+"""The record of a method of simulation, by which the rest of the package uses it."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 
 from mesokit.case import methods
 from mesokit.case.amounts import duration_text
+from mesokit.case.case import Case
 from mesokit.case.component import show
+from mesokit.case.trajectory import Group
 from mesokit.processes.cores import usable_cores
+from mesokit.seam.engine import Engine
+from mesokit.seam.observable import Observable
 from mesokit.seam.units import Units
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.case.trajectory import Group
     from mesokit.geometry.solids.solids import Solids
-    from mesokit.seam.engine import Engine
 
 E = TypeVar("E")  # engine of a method
 S = TypeVar("S")  # state that it starts from
@@ -52,8 +53,7 @@ class Summary(NamedTuple):
 
 
 class Columns(NamedTuple, Generic[E]):
-    """What a log may tell of the particles: all names, those that are usual, and how to find some
-    of them in an engine."""
+    """Columns of a log: all names, those that are usual, and how to read some in an engine."""
 
     names: tuple[str, ...]
     usual: tuple[str, ...]
@@ -67,8 +67,8 @@ NO_COLUMNS: Columns[object] = Columns((), (), lambda engine, wanted: {})
 class BuildUp(NamedTuple):
     """How a flow from rest comes to its steady state: what it lacks falls as an exponential.
 
-    steps: in which that falls to 1/e; need: that `mesokit check` asks to wait for before the first
-    sample; had: that the run waited.
+    steps: in which that falls to 1/e; need: the wait before the first sample that `mesokit check`
+    recommends; had: that the run waited.
     """
 
     steps: float
@@ -112,7 +112,7 @@ class InitialState(NamedTuple, Generic[E, S]):
 
 
 class Enclosure(NamedTuple):
-    """What shuts particles in: numbers of the axes that are not periodic, and the solids that
+    """Enclosure of particles: numbers of the axes that are not periodic, and the solids that
     pictures show (`mesokit.geometry.solids.solids.Solids`) or None, both of a case."""
 
     closed_axes: Callable[[Case], set[int]] = lambda case: set()
@@ -136,17 +136,16 @@ class Method:
     Parameters
     ----------
     name : str
-        What `run.method` says.
+        The value of `run.method`.
     sections : class
         Its annotated fields, made by `param`, are the sections of its cases.
     observables : sequence of type
-        The observables that it offers, or bases of them. Others may say in `methods` that they
-        are for it.
+        The observables that it offers, or bases of them. Others may name it in `methods`.
     check : function of a case
         Raises CaseError for values that are fine alone and have no physics together.
     groups : function of a case
-        The groups of its particles or sites, in the order of their numbers, and what an engine
-        tells of each (`mesokit.case.trajectory.Group`).
+        The groups of its particles or sites, in the order of their numbers, and the quantities of
+        each (`mesokit.case.trajectory.Group`).
     timestep : function of a case
         The time that a step takes.
     summary : function of a case and a number of threads (None: all cores)
@@ -170,7 +169,7 @@ class Method:
     keep_files : function of a case and the folder of its run, optional
         The case, with copies in that folder of the files that it was made from.
     log : function of a case, optional
-        What the log of its run may tell.
+        The columns of the log of its run.
     si : function of a case, optional
         What its units are in SI; without it, a case must not have the section `[units]`.
     build_up : function of a case, optional
@@ -182,7 +181,7 @@ class Method:
         What lengths, times and masses are counted in; unless said, the unit of the case.
     check_ranks : function of a case and a number of ranks, optional
         Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
-        can. Its engine is then asked by all ranks at once.
+        can. All ranks then call its engine at once.
     """
 
     name: str
@@ -196,7 +195,7 @@ class Method:
     engine: Callable[[Case, int, Sequence[str]], Engine]
     box: tuple[str, ...] = ()
     keys: Mapping[str, str] = field(default_factory=dict)
-    expected: Mapping[str, Callable[[Case, Any], Any]] = field(default_factory=dict)
+    expected: Mapping[str, Callable[[Case, Observable], Any]] = field(default_factory=dict)
     enclosure: Enclosure = NOT_ENCLOSED
     bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
     keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
@@ -216,38 +215,28 @@ def method_of(case: Case) -> Method:
 
 def summary_of(case: Case, threads: int | None = None) -> Summary:
     """What follows from a case, by its method; of replicas how long all of them take."""
-    found = _of_all_replicas(case, threads)
-    rows = [
-        (name, value, note + _uncounted(case) if name == "run time" else note)
-        for name, value, note in found.rows
-    ]
-    return found._replace(rows=tuple(rows))
-
-
-def _uncounted(case: Case) -> str:
-    """What an estimate of the run time hardly counts: samples, where they are frequent."""
+    summary, number, seed = method_of(case).summary, case.run.replicas, case.run.seed
+    if number == 1:
+        found = summary(case, threads)
+    else:
+        cores = usable_cores() if threads is None else threads
+        one = summary(case, max(1, cores // number))
+        seconds, all_rows = one.seconds * math.ceil(number / cores), []
+        for name, value, note in one.rows:
+            if name == "run time":
+                value, note = duration_text(seconds), f"estimate: of all, {cores} threads"
+            all_rows.append((name, value, "estimate: of each" if name == "memory" else note))
+        replicas = ("replicas", str(number), f"seeds {seed} to {seed + number - 1}, side by side")
+        numbers = {**one.numbers, "replicas": number}
+        memory = one.memory * number
+        found = Summary((replicas, *all_rows), one.warnings, seconds, numbers, memory)
     often = {one.label: one.every for one in case.observe if one.every < SELDOM}
     if not often:
-        return ""
+        return found
+    # the estimate of the run time hardly counts samples, which are frequent here
     every = min(often.values())
     what = next(iter(often)) if len(often) == 1 else f"{len(often)} observables"
     steps = "every step" if every == 1 else f"every {every} steps"
-    return f"; samples of {what}, up to {steps}, may add much to it"
-
-
-def _of_all_replicas(case: Case, threads: int | None) -> Summary:
-    number = case.run.replicas
-    if number == 1:
-        return method_of(case).summary(case, threads)
-    cores = usable_cores() if threads is None else threads
-    one = method_of(case).summary(case, max(1, cores // number))
-    seconds = one.seconds * math.ceil(number / cores)
-    last = case.run.seed + number - 1
-    rows = [("replicas", str(number), f"seeds {case.run.seed} to {last}, side by side")]
-    for name, value, note in one.rows:
-        if name == "run time":
-            rows.append((name, duration_text(seconds), f"estimate: of all, {cores} threads"))
-        else:
-            rows.append((name, value, "estimate: of each" if name == "memory" else note))
-    numbers = {**one.numbers, "replicas": number}
-    return Summary(tuple(rows), one.warnings, seconds, numbers, one.memory * number)
+    more = f"; samples of {what}, up to {steps}, may add much to it"
+    rows = [(*row[:2], row[2] + more if row[0] == "run time" else row[2]) for row in found.rows]
+    return found._replace(rows=tuple(rows))

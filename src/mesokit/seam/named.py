@@ -1,13 +1,14 @@
 """Numbers by short names: `viscosity`, where only one of several begins so."""
 
 import difflib
+import itertools
 import re
 from collections.abc import Iterable
 from typing import Protocol, TypeVar
 
 
 class Named(Protocol):
-    """What says in words what it is."""
+    """Something with a name in words."""
 
     @property
     def what(self) -> str:
@@ -37,11 +38,9 @@ def keyed(comparisons: Iterable[T]) -> dict[str, T]:
     """
     found: dict[str, T] = {}
     for comparison in comparisons:
-        key = plain = key_of(comparison.what)
-        number = 1
-        while key in found:
-            number += 1
-            key = f"{plain}-{number}"
+        plain = key_of(comparison.what)
+        others = (f"{plain}-{number}" for number in itertools.count(2))
+        key = next(key for key in itertools.chain([plain], others) if key not in found)
         found[key] = comparison
     return found
 
@@ -50,7 +49,7 @@ def find(comparisons: Iterable[T], name: str) -> T:
     """The comparison of that name, or the only one whose name begins with it.
 
     The name may be the words or the key of `keyed`; large letters and signs between the words do
-    not matter. Raises KeyError, which says what is there and near.
+    not matter. Raises KeyError with the names that are there or near.
 
     >>> from mesokit.seam.result import Comparison
     >>> measured = [Comparison("viscosity from curvature", 0.9, 0.1), Comparison("slip", 0, 1)]

@@ -1,1 +1,1 @@
-"""What a case may say, described from its components: JSON schema, explanations, docstrings."""
+"""Descriptions of the keys of a case: JSON schema, explanations and docstrings."""

@@ -1,4 +1,4 @@
-"""What a key of a case file means: `mesokit explain`."""
+"""Explanations of the keys of a case file: `mesokit explain`."""
 
 import difflib
 import re
@@ -23,7 +23,7 @@ class Explanation(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a path has come to: what is said there of a key, and what its table may be."""
+    """A place that a path leads to: the schema of a key, and the tables that it may be."""
 
     path: str
     node: Mapping[str, Any]
@@ -74,7 +74,7 @@ def explain(path: str = "") -> list[Explanation]:
         if not found:
             raise _unknown(path, word, places[0], definitions)
         places = found
-    paths: dict[tuple[Any, ...], list[str]] = {}  # what is the same in several parts is said once
+    paths: dict[tuple[Any, ...], list[str]] = {}  # the same meaning in several parts is listed once
     for place in places:
         where, *said = _explained(place, definitions)
         paths.setdefault((said[0], tuple(said[1])), []).append(where)
@@ -119,17 +119,6 @@ def _everywhere(place: Place, definitions: Any, deep: int = 4) -> Iterator[Place
                     yield from _everywhere(found, definitions, deep - 1)
 
 
-def _deeper(place: Place, word: str, definitions: Any) -> list[str]:
-    """Paths of keys of that name within the keys of a place, each once."""
-    found: dict[str, None] = {}
-    for table in place.tables.values():
-        for key in table["properties"]:
-            for inner in _inside(Place(place.path, place.node, {"": table}), key, definitions):
-                if any(word in part["properties"] for part in inner.tables.values()):
-                    found[f"{place.path}.{key}.{word}"] = None
-    return list(found)
-
-
 def _explained(place: Place, definitions: Any) -> Explanation:
     if place.key is None:  # a part
         meaning, keys = place.node.get("description", ""), keys_of(place.node, definitions)
@@ -141,15 +130,11 @@ def _explained(place: Place, definitions: Any) -> Explanation:
         return Explanation(place.path, text, keys_of(table, definitions))
     if place.tables:
         rows = [
-            Key(name, "", "", "", _first(table["description"]))
+            Key(name, "", "", "", " ".join(table["description"].split("\n\n")[0].split()))
             for name, table in place.tables.items()
         ]
         return Explanation(place.path, meaning, rows)
     return Explanation(place.path, meaning, [place.key])
-
-
-def _first(text: str) -> str:
-    return " ".join(text.split("\n\n")[0].split())
 
 
 def _unknown(path: str, word: str, place: Place, definitions: Any) -> CaseError:
@@ -162,28 +147,29 @@ def _unknown(path: str, word: str, place: Place, definitions: Any) -> CaseError:
     known = list(dict.fromkeys(known))
     if not known:
         return CaseError(f"{path}: {place.path} has no keys inside")
-    deeper = [] if not place.path else _deeper(place, word, definitions)
-    if deeper:
-        return CaseError(f"{path}: unknown key; did you mean {one_of(deeper)}?")
     if place.path:
+        deeper = {  # keys of that name within the keys of the place
+            f"{place.path}.{key}.{word}": None
+            for table in place.tables.values()
+            for key in table["properties"]
+            for inner in _inside(Place(place.path, place.node, {"": table}), key, definitions)
+            if any(word in part["properties"] for part in inner.tables.values())
+        }
+        if deeper:
+            return CaseError(f"{path}: unknown key; did you mean {one_of(list(deeper))}?")
         hint = nearest(word, known) or f"; valid here: {', '.join(known)}"
         return CaseError(f"{path}: unknown key{hint}")
-    mentioned = _mentioned(place, definitions)
-    close = difflib.get_close_matches(word, [*known, *mentioned], 1, NEAR)
+    # keys of parts, and the words by which these are described, each with its paths
+    found: dict[str, dict[str, None]] = {}
+    for part in _everywhere(place, definitions):
+        for key in part.node.get("properties", ()):
+            found.setdefault(key, {})[f"{part.path}.{key}"] = None
+        for each in re.findall(r"[a-z]{5,}", part.node.get("description", "").lower()):
+            found.setdefault(each, {})[part.path] = None
+    close = difflib.get_close_matches(word, [*known, *found], 1, NEAR)
     if not close:
         return CaseError(f"{path}: unknown key; mesokit explain lists the sections of a case")
     if close[0] in known:
         return CaseError(f"{path}: unknown key; did you mean {one_of(close)}?")
-    where = ", ".join(mentioned[close[0]][:MOST])
+    where = ", ".join(sorted(found[close[0]], key=lambda path: path.count("."))[:MOST])
     return CaseError(f"{path}: no key of a case; {show(close[0])} is explained at {where}")
-
-
-def _mentioned(start: Place, definitions: Any) -> dict[str, list[str]]:
-    """The keys of parts, and the words by which these are described, each with its paths."""
-    found: dict[str, dict[str, None]] = {}
-    for place in _everywhere(start, definitions):
-        for key in place.node.get("properties", ()):
-            found.setdefault(key, {})[f"{place.path}.{key}"] = None
-        for word in re.findall(r"[a-z]{5,}", place.node.get("description", "").lower()):
-            found.setdefault(word, {})[place.path] = None
-    return {word: sorted(paths, key=lambda path: path.count(".")) for word, paths in found.items()}

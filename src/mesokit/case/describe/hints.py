@@ -1,7 +1,5 @@
 """Type hints of components: as type checkers see them, and as `help` shows them."""
 
-from __future__ import annotations
-
 import dataclasses
 import inspect
 import re
@@ -12,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 T = TypeVar("T")
 A = TypeVar("A")
 
-# Fields that are given as lists, tuples or arrays, and are tuples ever after. A type checker sees
-# what may be set to any iterable and is a tuple when it is read, which no plain hint says.
+# Fields that are given as lists, tuples or arrays, and are tuples ever after. For type
+# checkers they may be set to any iterable and are read as tuples, which no plain hint expresses.
 if TYPE_CHECKING:
 
     class Many(Generic[T]):
@@ -70,17 +68,9 @@ def text_of(hint: Any) -> str:
 def show_signature(made: Any, shown: dict[str, Any]) -> None:
     """Give a component a signature that can be read.
 
-    `shown` are the hints of fields as they were written, before the rules for their values.
+    `shown` are the hints of fields as they were written, before the rules for their values. A
+    parameter that is required after one with a default is given by name.
     """
-    parameters = _parameters(made, shown)
-    myself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
-    made.__signature__ = inspect.Signature(parameters)
-    made.__init__.__signature__ = inspect.Signature([myself, *parameters])
-
-
-def _parameters(made: Any, shown: dict[str, Any]) -> list[inspect.Parameter]:
-    """In the order in which they can be given; what must be given after one with a default, by
-    name."""
     parameters: list[inspect.Parameter] = []
     by_name = False
     for field in sorted(dataclasses.fields(made), key=lambda field: bool(field.kw_only)):
@@ -89,23 +79,21 @@ def _parameters(made: Any, shown: dict[str, Any]) -> list[inspect.Parameter]:
         by_name |= bool(field.kw_only) or (
             needed and any(p.default is not p.empty for p in parameters)
         )
-        default = _default(_extra(about).get("unless_said", about.default))
+        extra = about.json_schema_extra if isinstance(about.json_schema_extra, dict) else {}
+        default = _default(extra.get("unless_said", about.default))
         parameters.append(
             inspect.Parameter(
                 field.name,
-                inspect.Parameter.KEYWORD_ONLY if by_name else _BY_PLACE,
+                inspect.Parameter.KEYWORD_ONLY
+                if by_name
+                else inspect.Parameter.POSITIONAL_OR_KEYWORD,
                 default=inspect.Parameter.empty if needed else default,
                 annotation=_Plain(text_of(shown.get(field.name, Any))),
             )
         )
-    return parameters
-
-
-_BY_PLACE = inspect.Parameter.POSITIONAL_OR_KEYWORD
-
-
-def _extra(about: Any) -> dict[str, Any]:
-    return about.json_schema_extra if isinstance(about.json_schema_extra, dict) else {}
+    myself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
+    made.__signature__ = inspect.Signature(parameters)
+    made.__init__.__signature__ = inspect.Signature([myself, *parameters])
 
 
 def _default(value: Any) -> Any:

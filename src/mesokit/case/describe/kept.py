@@ -18,9 +18,9 @@ PACKAGE = Path(__file__).parents[2]
 
 
 def kept_schema() -> dict[str, Any]:
-    """What `schema` returns, from the user's cache if this mesokit has put it there.
+    """The JSON schema of `schema`, from the user's cache if it is there.
 
-    With parts from elsewhere it is always made, as their files may change unseen.
+    With parts of other packages it is always made, as their files may change.
     """
     file = None if _has_others() else _file()
     with contextlib.suppress(OSError, ValueError):
@@ -32,7 +32,12 @@ def kept_schema() -> dict[str, Any]:
     made = schema()
     if file is not None:
         with contextlib.suppress(OSError):  # it costs time, no more
-            _keep(file, json.dumps(made))
+            file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            for old in file.parent.glob("schema-*.json"):  # of other sources
+                old.unlink(missing_ok=True)
+            temporary = file.with_suffix(f".{os.getpid()}")
+            temporary.write_text(json.dumps(made), encoding="utf-8")
+            temporary.replace(file)
     return made
 
 
@@ -41,19 +46,9 @@ def schema_text() -> str:
     return json.dumps(kept_schema(), indent=1, ensure_ascii=False) + "\n"
 
 
-def _keep(file: Path, text: str) -> None:
-    """Write the file whole, and remove those of other sources. Raises OSError."""
-    file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    for old in file.parent.glob("schema-*.json"):
-        old.unlink(missing_ok=True)
-    temporary = file.with_suffix(f".{os.getpid()}")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(file)
-
-
 def _has_others() -> bool:
     """Whether a script or an installed package has brought parts or methods."""
-    known = (part for family in FAMILIES.values() for part in family.known())
+    known = (part for family in FAMILIES.values() for part in family.known.values())
     if any(not part.__module__.startswith("mesokit.") for part in known):
         return True
     groups = importlib.metadata.entry_points().groups

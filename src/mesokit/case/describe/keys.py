@@ -1,10 +1,11 @@
-"""The keys of a component as rows of a table, read from its JSON schema."""
+"""The keys of a component, read from its JSON schema: rows of tables, and part of its docstring."""
 
+import inspect
 import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from mesokit.case.describe.plain import PLACE, Schema
+from mesokit.case.describe.plain import PLACE, PLAIN, Schema, plain_schemas
 
 KINDS = {
     "number": "number",
@@ -40,6 +41,30 @@ class Key(NamedTuple):
         takes = f"{self.takes} [{self.unit}]" if self.unit else self.takes
         told = self.default in ("", REQUIRED)
         return ", ".join(filter(None, [takes, self.default if told else f"default {self.default}"]))
+
+
+class Documented:
+    """The `__doc__` of a component with a table of its keys, made when it is read."""
+
+    def __init__(self, text: str | None) -> None:
+        self.text = inspect.cleandoc(text or "")
+        self.whole = ""
+
+    def __get__(self, instance: Any, owner: type) -> str:
+        if PLAIN.get():  # a schema has no room for code
+            return self.text.partition("\nExamples:")[0].rstrip()
+        if not self.whole:
+            summary, end, examples = self.text.partition("\nExamples:")
+            keys = [] if "Parameters" in self.text else self.keys(owner)
+            table = "\n".join(f"    {key.name} ({key.values}): {key.meaning}" for key in keys)
+            parts = [summary.rstrip(), f"Parameters:\n{table}", (end + examples).strip()]
+            self.whole = "\n\n".join(filter(None, parts)) + "\n" if keys else self.text
+        return self.whole
+
+    def keys(self, owner: type) -> list[Key]:
+        """The keys of the component but its tag."""
+        found, definitions = plain_schemas({"": owner})
+        return [key for key in keys_of(found[""], definitions) if not key.tag]
 
 
 def keys_of(definition: Mapping[str, Any], definitions: Mapping[str, Schema]) -> list[Key]:
@@ -101,14 +126,10 @@ def parts_of(node: Schema, definitions: Mapping[str, Schema]) -> Parts | None:
     if not places or len(places) < len(options):
         return None
     found = [definitions[place] for place in places]
-    tag = next(iter(_tags(found[0])), "")
+    tag = next((key for key, inner in found[0]["properties"].items() if "const" in inner), "")
     if not tag:
         return "", {"": found[0]}
     return tag, {each["properties"][tag]["const"]: each for each in found}
-
-
-def _tags(definition: Schema) -> list[str]:
-    return [name for name, inner in definition["properties"].items() if "const" in inner]
 
 
 def _listed(words: list[str]) -> str:

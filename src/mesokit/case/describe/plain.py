@@ -1,4 +1,4 @@
-"""JSON schema of components as pydantic knows them, made plain for the editors of case files.
+"""JSON schema of components from pydantic, made plain for the editors of case files.
 
 Draft 7, which editors of TOML understand: nothing beside a `$ref`, no `null` (TOML has none), units
 at the end of descriptions, and tags required wherever they tell parts apart.
@@ -14,7 +14,7 @@ from pydantic.json_schema import GenerateJsonSchema
 Schema = dict[str, Any]
 PLAIN = ContextVar("PLAIN", default=False)  # docstrings as written, for they are described here
 PLACE = "#/definitions/"
-TAGS = ("rule", "shape", "quantity", "substance")  # as in `component`, which this file comes before
+TAGS = ("rule", "shape", "quantity", "substance")  # keys whose value names a component
 LIMITS = {  # as pydantic leaves them beside a choice that has None
     "gt": "exclusiveMinimum",
     "ge": "minimum",
@@ -42,9 +42,14 @@ def plain_schemas(components: Mapping[str, Any]) -> tuple[dict[str, Schema], dic
             definition["properties"][tag] |= {"const": name}  # also where its author wrote `str`
             if len(parts) > 1:  # the only part need not be named
                 definition["required"] = sorted({*definition.get("required", ()), tag})
-    schemas = {name: _resolved(found[name, _inputs], definitions) for name in components}
+    schemas = {}
+    for name in components:
+        schema = found[name, _inputs]
+        if "$ref" in schema:  # and no more
+            schema = definitions[schema["$ref"].removeprefix(PLACE)]
+        schemas[name] = _plain(schema)
     return (
-        {name: _plain(schema) for name, schema in schemas.items()},
+        schemas,
         {name: _plain(schema) for name, schema in definitions.items()},
     )
 
@@ -57,12 +62,6 @@ class _Untitled(GenerateJsonSchema):
 
     def field_title_should_be_set(self, schema: Any) -> bool:
         return False
-
-
-def _resolved(schema: Schema, definitions: Mapping[str, Schema]) -> Schema:
-    """What a schema refers to, if it does nothing else."""
-    place = schema.get("$ref")
-    return definitions[place.removeprefix(PLACE)] if place else schema
 
 
 def _choices(node: Any) -> Iterable[tuple[str, dict[str, str]]]:
@@ -105,21 +104,21 @@ def _plain(node: Schema) -> Schema:
     return made
 
 
-def _said(table: Schema) -> Schema:
-    """A table without the values that are not given."""
-    return {key: each for key, each in table.items() if each not in (None, [])}
-
-
 def _settle_default(made: Schema) -> None:
-    """Leave out a default that says nothing: a table of defaults, or what stands for one that is
+    """Leave out a default without a meaning: a table of defaults, or what stands for one that is
     found later."""
     default = made.pop("default", None)
     default = made.pop("unless_said", default)
     if isinstance(default, dict):
         named = any(tag in default for tag in TAGS)
         default = {key: each for key, each in default.items() if named and each not in (None, [])}
-    if isinstance(default, list):  # a part in a list says what it has
-        default = [_said(each) if isinstance(each, dict) else each for each in default]
+    if isinstance(default, list):  # tables in a list, without values that are not given
+        default = [
+            {k: v for k, v in each.items() if v not in (None, [])}
+            if isinstance(each, dict)
+            else each
+            for each in default
+        ]
     limited = isinstance(default, float | int) and (
         default <= made.get("exclusiveMinimum", float("-inf"))
         or default < made.get("minimum", float("-inf"))

@@ -3,7 +3,7 @@
 from typing import Any
 
 from mesokit.case import methods
-from mesokit.case.case import FIELDS, SECTIONS, Case, case_class
+from mesokit.case.case import FIELDS, SECTIONS, case_class
 from mesokit.case.checks import is_offered
 from mesokit.case.component import tag_of
 from mesokit.case.describe.plain import PLACE, plain_schemas
@@ -18,7 +18,7 @@ def schema() -> dict[str, Any]:
 
     It covers all methods and the parts that installed packages bring. Editors complete and check
     case files by it: Taplo and Even Better TOML where the first line is
-    `#:schema ./case.schema.json`. What it lets pass may still be refused: it knows no physics.
+    `#:schema ./case.schema.json`. Cases that it accepts may still be refused: it has no physics.
 
     Raises:
         CaseError: a method or a part that a package brings cannot be loaded.
@@ -30,13 +30,24 @@ def schema() -> dict[str, Any]:
         >>> sorted(found["properties"])[:4]
         ['box', 'brownian', 'flock', 'fluid']
     """
-    cases = {name: _case_class(name) for name in methods.modules()}
+    cases = {}
+    for name in methods.modules():
+        try:
+            cases[name] = case_class(name)
+        except Exception as error:
+            if name in methods.METHODS:
+                raise
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            raise CaseError(f"run.method {name!r} cannot be loaded: {reason}") from error
     found, definitions = plain_schemas(cases)
     definitions["Run"]["properties"]["method"]["enum"] = list(cases)
-    sections = {name: _by_key(cases[name], each["properties"]) for name, each in found.items()}
+    sections = {}  # of each method, by their keys in a file
+    for name, each in found.items():
+        keys = cases[name]._method.keys
+        sections[name] = {keys.get(key, key): inner for key, inner in each["properties"].items()}
     together: dict[str, Any] = {}
     whose: dict[str, str] = {}
-    for name, each in reversed(sections.items()):  # the usual method says what shared keys mean
+    for name, each in reversed(sections.items()):  # the usual method describes shared keys
         for key, inner in each.items():
             if key not in together or key in sections[methods.DEFAULT]:
                 together[key], whose[key] = inner, name
@@ -50,7 +61,7 @@ def schema() -> dict[str, Any]:
         "description": "Everything that defines a run.",
         "type": "object",
         "properties": {key: together[key] for key in dict.fromkeys(order)},
-        "required": [key for key, field in FIELDS.items() if key != SECTIONS and _needed(field)],
+        "required": [k for k, field in FIELDS.items() if k != SECTIONS and field[1].is_required()],
         "additionalProperties": False,
         "allOf": [_rules(name, cases[name], sections[name], together) for name in cases],
         "definitions": dict(sorted(definitions.items())),
@@ -60,7 +71,7 @@ def schema() -> dict[str, Any]:
 def _any_of_both(
     key: str, both: dict[str, dict[str, Any]], definitions: dict[str, Any]
 ) -> dict[str, Any]:
-    """A section of two methods, each of which says below which of the keys are its own."""
+    """A section of two methods; keys of one of them alone are named in its rule below."""
     tables = {
         name: definitions[each["allOf"][0]["$ref"].removeprefix(PLACE)]
         for name, each in both.items()
@@ -71,16 +82,18 @@ def _any_of_both(
             if all(inside in other["properties"] for other in tables.values()):
                 known = joint.setdefault(inside, inner)
                 if known != inner:
-                    told = {
-                        name: _told(each["properties"][inside]) for name, each in tables.items()
+                    both_tables = [(each, t["properties"][inside]) for each, t in tables.items()]
+                    told = {each: key.get("description", "") for each, key in both_tables}
+                    words = "; ".join(f"method '{each}': {text}" for each, text in told.items())
+                    joint[inside] = {
+                        "anyOf": [{**k, "title": f"method '{each}'"} for each, k in both_tables],
+                        "description": inner.get("description", "")
+                        if len(set(told.values())) == 1
+                        else words,
                     }
-                    options = [
-                        {**each["properties"][inside], "title": f"method '{name}'"}
-                        for name, each in tables.items()
-                    ]
-                    joint[inside] = {"anyOf": options, "description": _told_by(told)}
             else:
-                joint[inside] = {**inner, "description": f"method '{name}': {_told(inner)}"}
+                words = inner.get("description", "")
+                joint[inside] = {**inner, "description": f"method '{name}': {words}"}
     title, names = key.capitalize(), " and ".join(f"'{name}'" for name in both)
     about = f"Of the methods {names}. Keys of one alone say so."
     first = next(iter(tables.values()))
@@ -88,57 +101,18 @@ def _any_of_both(
     return {**next(iter(both.values())), "allOf": [{"$ref": f"{PLACE}{title}"}]}
 
 
-def _told_by(told: dict[str, str]) -> str:
-    """What a key means by each method, once if it is the same."""
-    if len(set(told.values())) == 1:
-        return next(iter(told.values()))
-    return "; ".join(f"method '{name}': {words}" for name, words in told.items())
-
-
-def _told(inner: dict[str, Any]) -> str:
-    """What a key means."""
-    told: str = inner.get("description", "")
-    return told
-
-
-def _case_class(name: str) -> type[Case]:
-    try:
-        return case_class(name)
-    except Exception as error:
-        if name in methods.METHODS:
-            raise
-        reason = " ".join(f"{type(error).__name__}: {error}".split())
-        raise CaseError(f"run.method {name!r} cannot be loaded: {reason}") from error
-
-
-def _needed(field: Any) -> bool:
-    return bool(field[1].is_required())
-
-
-def _by_key(case: Any, fields: dict[str, Any]) -> dict[str, Any]:
-    """The sections of a method by their keys in a file."""
-    return {case._method.keys.get(name, name): inner for name, inner in fields.items()}
-
-
 def _rules(name: str, case: Any, own: dict[str, Any], together: dict[str, Any]) -> dict[str, Any]:
-    """What holds for cases of one method only: its sections and its observables."""
+    """The rule for cases of one method: its sections and the observables that it offers."""
     named: dict[str, Any] = {"properties": {"method": {"const": name}}}
     if name != methods.DEFAULT:
         named["required"] = ["method"]
     closed: dict[str, Any] = {key: False for key in together if key not in own}
     closed |= {key: inner for key, inner in own.items() if together[key] != inner}
-    closed["observe"] = {"items": {"properties": {"quantity": {"enum": _offered(name, case)}}}}
-    return {"if": {"properties": {"run": named}}, "then": {"properties": closed}}
-
-
-def _offered(name: str, case: Any) -> list[str]:
-    """The observables of a method, and those which say that they are for it."""
     offered = case._method.observables
     family = next(known for base, known in FAMILIES.items() if issubclass(offered[0], base))
     for each in family.names():
         family.find(each)
-    return [
-        found[1]
-        for part in family.parts.values()
-        if is_offered(part, name, offered) and (found := tag_of(part))
-    ]
+    parts = [part for part in family.parts.values() if is_offered(part, name, offered)]
+    names = [found[1] for part in parts if (found := tag_of(part))]
+    closed["observe"] = {"items": {"properties": {"quantity": {"enum": names}}}}
+    return {"if": {"properties": {"run": named}}, "then": {"properties": closed}}

@@ -1,9 +1,9 @@
-"""What notebooks show of an object: a small table."""
+"""Small tables by which notebooks show objects."""
 
 import importlib
 from typing import Any
 
-PAGES = "mesokit.report.document"  # by its name: what is shown knows nothing of how
+PAGES = "mesokit.report.document"  # loaded by name, as `case` does not import `report`
 
 
 class Shown:
@@ -14,6 +14,5 @@ class Shown:
         raise NotImplementedError
 
     def _repr_html_(self) -> str:
-        """What a notebook asks for."""
         html: str = importlib.import_module(PAGES).card(**self._card())
         return html

@@ -1,1 +1,1 @@
-"""What a run is given to start from: arrays in files, and positions that the box has not."""
+"""Files of a case: arrays and snapshots from which a run starts, and their checks."""

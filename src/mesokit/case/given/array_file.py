@@ -40,29 +40,26 @@ def array_in_file(
     Raises OSError for a file that cannot be read, and ValueError, with the reason, for another
     shape than this and for what is no array of numbers.
     """
-    found = _in_file(path, name, shape)
-    if scale is None or found.dtype.kind not in "iuf":  # what is no number is refused by name
-        return found
-    return np.asarray(found, float) * scale
-
-
-def _in_file(path: str, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
     if is_plain(path):
         with open(path, "rb") as file:
             _require(file, shape)
-        return np.load(path, mmap_mode="r", allow_pickle=False)
-    try:
-        with zipfile.ZipFile(path) as archive:
-            members = {member.removesuffix(".npy"): member for member in archive.namelist()}
-            if name not in members and len(members) != 1:
-                raise ValueError(f"expected one array, or one named {name!r}")
-            member = members[name if name in members else next(iter(members))]
-            with archive.open(member) as stream:
-                _require(stream, shape)
-            with archive.open(member) as stream:
-                return np.asarray(npy.read_array(stream, allow_pickle=False))
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError):
-        raise ValueError(EXPECTED) from None
+        found = np.load(path, mmap_mode="r", allow_pickle=False)
+    else:
+        try:
+            with zipfile.ZipFile(path) as archive:
+                members = {member.removesuffix(".npy"): member for member in archive.namelist()}
+                if name not in members and len(members) != 1:
+                    raise ValueError(f"expected one array, or one named {name!r}")
+                member = members[name if name in members else next(iter(members))]
+                with archive.open(member) as stream:
+                    _require(stream, shape)
+                with archive.open(member) as stream:
+                    found = np.asarray(npy.read_array(stream, allow_pickle=False))
+        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError):
+            raise ValueError(EXPECTED) from None
+    if scale is None or found.dtype.kind not in "iuf":  # other types are refused by their name
+        return found
+    return np.asarray(found, float) * scale
 
 
 def is_plain(path: str) -> bool:

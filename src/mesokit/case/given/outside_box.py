@@ -14,11 +14,7 @@ ROUNDING = 1e-5  # of the box: files keep places as float32
 
 
 def warn_outside(
-    key: str,
-    positions: NDArray[Any],
-    box: Box,
-    without: Collection[str] = (),
-    first: int = 0,
+    key: str, positions: NDArray[Any], box: Box, without: Collection[str] = (), first: int = 0
 ) -> None:
     """Warn of positions (n, d) outside of a box, whose images in it are taken.
 

@@ -1,4 +1,4 @@
-"""Particles as another program has written them: what a file gives a case to start from."""
+"""Particles that another program has written, from which a case may start."""
 
 from __future__ import annotations
 

@@ -34,11 +34,9 @@ class OscillatingShear(ShearHistory):
 
     @property
     def repeats_after(self) -> float:
-        """The period of the cosine."""
         return 2 * math.pi / self.frequency
 
     def kernel(self, height: float) -> Cosine:
-        """Parameters for the scalar functions."""
         return Cosine(self.rate * height, self.frequency)
 
 
@@ -56,9 +54,7 @@ def waved(history, time):
     return sincos_turn(turns - floor(turns))
 
 
-@speed.register(Cosine)
-def _(history, time):
-    return history.fastest * waved(history, time)[1]
+speed.register(Cosine)(lambda history, time: history.fastest * waved(history, time)[1])
 
 
 @slid.register(Cosine)

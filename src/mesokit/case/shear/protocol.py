@@ -1,8 +1,8 @@
-"""What a history of shear answers: the shear rate at a time, and the strain since time 0.
+"""Protocol of histories of shear: the shear rate at a time, and the strain since time 0.
 
 Time counts from the start of a run, its warm-up included. The kernel of a history is a NamedTuple
-of numbers, whose class picks the two scalar functions. They are asked for a `height`: rate times
-height is the speed of what moves at that height, strain times height how far it has come.
+of numbers, whose class picks the two scalar functions. A kernel is made for a height: the rate
+times the height is the speed at that height, the strain times the height the displacement.
 """
 
 from abc import ABC, abstractmethod
@@ -39,7 +39,7 @@ class ShearHistory(ABC):
         """Parameters for the scalar functions below: a NamedTuple, whose class picks them."""
 
     def problems(self) -> Iterator[str]:
-        """What is wrong with it, key first."""
+        """Errors, key first."""
         yield from ()
 
     def rate_at(self, time: float) -> float:
@@ -55,9 +55,9 @@ class ShearHistory(ABC):
 
 @generic
 def speed(history, time):
-    """Speed of what moves at the height of the kernel: the shear rate times that height."""
+    """Speed at the height of the kernel: the shear rate times that height."""
 
 
 @generic
 def slid(history, time):
-    """How far it has come since time 0: the integral of its speed, exactly."""
+    """Displacement at that height since time 0: the integral of the speed, exactly."""

@@ -26,7 +26,6 @@ class SteadyShear(ShearHistory):
         return abs(self.rate)
 
     def kernel(self, height: float) -> Even:
-        """Parameters for the scalar functions."""
         return Even(self.rate * height)
 
 
@@ -36,11 +35,7 @@ class Even(NamedTuple):
     speed: float
 
 
-@speed.register(Even)
-def _(history, time):
-    return history.speed
+speed.register(Even)(lambda history, time: history.speed)
 
 
-@slid.register(Even)
-def _(history, time):
-    return history.speed * time
+slid.register(Even)(lambda history, time: history.speed * time)

@@ -13,7 +13,8 @@ from abc import abstractmethod
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from mesokit.case.component import FileName, FromContents, component, param
+from mesokit.case.component import component, param
+from mesokit.case.given.file import FileName, FromContents
 from mesokit.errors import CaseError
 from mesokit.geometry.region import Region
 from mesokit.geometry.samples.distances import Floats, Grid, fitted, slope

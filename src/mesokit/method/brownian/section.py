@@ -5,7 +5,8 @@ from __future__ import annotations
 from pydantic import model_validator
 
 from mesokit.case.box import Box
-from mesokit.case.component import FileName, component, param, show
+from mesokit.case.component import component, param, show
+from mesokit.case.given.file import FileName
 
 
 @component

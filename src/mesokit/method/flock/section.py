@@ -7,8 +7,9 @@ from typing import Literal
 from pydantic import model_validator
 
 from mesokit.case.box import Box
-from mesokit.case.component import FileName, component, param, show
+from mesokit.case.component import component, param, show
 from mesokit.case.describe.hints import Many
+from mesokit.case.given.file import FileName
 from mesokit.geometry.shape import Wall
 from mesokit.method.flock.cohesion import Cohesion
 from mesokit.method.flock.noise import Noise

@@ -1,4 +1,4 @@
-"""What the log of a run may tell of an MPCD fluid."""
+"""Columns of the log of an MPCD fluid."""
 
 from collections.abc import Collection
 from typing import Any
@@ -37,10 +37,9 @@ def columns(case: Case) -> Columns:
 
 def total_mass(case: Case, number: int) -> float:
     """Of so many particles, all there are."""
-    solutes = case.solutes
     mass = number * case.fluid.mass
-    if solutes is not None:
-        mass += solutes.sum_over_mass(lambda own: own - case.fluid.mass)
+    if case.solutes is not None:
+        mass += case.solutes.sum_over_mass(lambda own: own - case.fluid.mass)
     return float(mass)
 
 
@@ -56,5 +55,5 @@ def temperature(case: Case, number: int, momentum: Array, energy: float) -> floa
 
 
 def forgets(case: Case) -> bool:
-    """Whether the solvent takes momentum and energy, and forgets them."""
+    """True if the solvent takes momentum and energy, and does not return them."""
     return case.solutes is not None and case.solutes.solvent == "random"

@@ -1,4 +1,4 @@
-"""What follows from a case before it runs: numbers, cost, and warnings."""
+"""Numbers that follow from a case before it runs: cost, warnings and the table of a check."""
 
 import dataclasses
 import math
@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from mesokit import theory
+from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.case import Case
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.trajectory import stored_bytes
@@ -16,7 +17,7 @@ from mesokit.method.mpcd.expected.molecules import longest_relaxation
 from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 from mesokit.method.mpcd.warnings import cautions
 from mesokit.processes.cores import usable_cores
-from mesokit.seam.method import BuildUp
+from mesokit.seam.method import BuildUp, Row, Summary
 from mesokit.seam.result import NOT_STEADY
 
 HOTTER = 0.05  # relative rise of kT from which on theory at kT is of another fluid
@@ -64,6 +65,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         bound, speed = speed, None
     round_pipe = recognise.pipe(case)
     nu = transport.viscosity if transport else None
+    typical = speed / 2 if speed is not None and flow == PIPE else speed  # the mean of a pipe
     length = 2 * round_pipe.radius if round_pipe else _length(case, across)
     builds_up = flow != "lees-edwards"  # that one starts with its linear profile
     rate = fluid.collision.rates[dimension] * 1e6 * (1 + (threads - 1) * COSTS["thread"])
@@ -87,10 +89,19 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         substeps = flights if fluid.molecule is None else substeps
         bead_seconds = beads * (BEAD + BEAD_SUBSTEP * flights) * steps
     memory = beads * BYTES["bead"] + case.particles * BYTES[f"particle {dimension}D"]
-    memory += _cells_bytes(case, beads, threads)
+    cells, cell_bytes = case.box.volume, BYTES[f"cell {dimension}D"]
+    if case.solutes is None or case.solutes.solvent != "random":
+        memory += cells * cell_bytes * threads
+    else:  # few cells of a random solvent are ever touched
+        empty = BYTES["empty cell"] + BYTES["end of a cell"] * threads
+        memory += min(cells, beads * CELLS_OF_BEAD) * cell_bytes * threads + cells * empty
     checkpoint = case.particles * BYTES[f"checkpoint {dimension}D"]
     memory += max(checkpoint, bool(case.observe) * BYTES["figures"])
     heated = _heating(case, across, steps)
+    observing = 0.0
+    for observable in case.observe:
+        seen = min(case.particles, getattr(observable, "particles", case.particles))
+        observing += case.run.steps // observable.every * seen * SAMPLE
     numbers = Derived(
         particles=case.particles,
         particle_steps=case.particles * steps,
@@ -101,7 +112,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         flow_speed=speed,
         flow_bound=bound,
         flow_size=length,
-        reynolds=_typical(speed, flow) * length / nu if speed is not None and nu else None,
+        reynolds=typical * length / nu if typical is not None and nu else None,
         mach=speed / transport.sound_speed if speed is not None and transport else None,
         steady_time=_steady_time(case, across, nu)
         if nu and (speed or bound) and builds_up
@@ -109,7 +120,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         relaxation=longest_relaxation(case),
         heating=heated[0] if heated else None,
         heating_bound=heated is not None and heated[1],
-        seconds=case.particles * steps / rate + bead_seconds + _observe_seconds(case),
+        seconds=case.particles * steps / rate + bead_seconds + observing,
         memory=round(memory + BYTES["program"]),
         trajectory=stored_bytes(case.trajectory, case.groups, dimension, case.run.steps),
         substeps=substeps,
@@ -120,14 +131,41 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     return Derived(**{**vars(numbers), "warnings": tuple(cautions(case, numbers, across))})
 
 
-def _cells_bytes(case: Case, beads: int, threads: int) -> float:
-    """Memory of the cells; of a random solvent few are ever touched."""
-    cells, each = case.box.volume, BYTES[f"cell {case.box.dimension}D"]
-    if case.solutes is None or case.solutes.solvent != "random":
-        return cells * each * threads
-    touched = min(cells, beads * CELLS_OF_BEAD)
-    empty = BYTES["empty cell"] + BYTES["end of a cell"] * threads
-    return touched * each * threads + cells * empty
+def summary(case: Case, threads: int | None = None) -> Summary:
+    """Derived numbers of a case as a table, and warnings."""
+    from mesokit.case.kind import has_run  # which loads compiled code
+
+    numbers, compiling, memory = derive(case, threads), compiling_memory(case), "estimate"
+    if compiling > numbers.memory and not has_run(case):
+        memory += f"; {size_text(compiling)} while it compiles, the first time"
+    rows: list[Row] = [("particles", f"{numbers.particles:,}".replace(",", " "), "")]
+    if case.solutes is not None:
+        rows.append(("beads of solutes", f"{case.solutes.beads:,}".replace(",", " "), ""))
+    molecule = case.fluid.molecule
+    if molecule is not None:
+        number_of = f"{numbers.particles // molecule.length:,}".replace(",", " ")
+        rows.append(("molecules", number_of, f"{molecule.topology}s of {molecule.length}"))
+    if numbers.relaxation is not None:
+        time, name = numbers.relaxation
+        steps = f"slowest mode, {name}; {round(time / case.fluid.timestep)} steps"
+        rows.append(("relaxation time", number(time, "tau"), steps))
+        if rate := abs(case.box.steady_rate):
+            rows.append(("Weissenberg number", number(rate * time), "shear rate x relaxation time"))
+    if numbers.substeps is not None:
+        how = molecule.propagation if molecule is not None else "verlet"
+        rows.append(("sub-steps", str(numbers.substeps), how))
+    if molecule is not None and case.solutes is not None:
+        beads = case.solutes.number_of_substeps(case.box.dimension, case.fluid)
+        rows.append(("sub-steps of solutes", str(beads), "verlet"))
+    rows += [
+        *numbers.fluid_rows(),
+        *numbers.flow_rows(case.fluid.timestep),
+        ("run time", duration_text(numbers.seconds), f"estimate: {numbers.assumed}"),
+        ("memory", size_text(numbers.memory), memory),
+    ]
+    if numbers.trajectory:
+        rows.append(("trajectory", size_text(numbers.trajectory), "estimate"))
+    return Summary(tuple(rows), numbers.warnings, numbers.seconds, numbers.record(), numbers.memory)
 
 
 def compiling_memory(case: Case) -> int:
@@ -151,9 +189,11 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
 
     For a channel with obstacles these are what they would be without: an upper bound.
     """
-    driven = _pipe_speed(case)
-    if driven is not None:
-        return PIPE, 1, driven
+    pipe, known = recognise.pipe(case), setting.transport(case)
+    if pipe is not None and known is not None and setting.driven_axis(case) == pipe.axis:
+        acceleration = float(abs(setting.uniform_acceleration(case)[pipe.axis]))
+        middle = theory.hagen_poiseuille_velocity(0.0, pipe.radius, acceleration, known.viscosity)
+        return PIPE, 1, float(middle)
     if setting.obstructed(case):
         plates = tuple(wall for wall in case.walls if isinstance(wall, Plates))
         if len(plates) == 1 and not plates[0].diffuse:
@@ -177,38 +217,10 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
     return (kinds or ["rest"])[0], across, float(np.sqrt(squares.max()))
 
 
-def _pipe_speed(case: Case) -> float | None:
-    """Of the flow on the axis of a round pipe at rest, None for another case."""
-    pipe, coefficients = recognise.pipe(case), setting.transport(case)
-    if pipe is None or coefficients is None or setting.driven_axis(case) != pipe.axis:
-        return None
-    acceleration = float(abs(setting.uniform_acceleration(case)[pipe.axis]))
-    middle = theory.hagen_poiseuille_velocity(
-        0.0, pipe.radius, acceleration, coefficients.viscosity
-    )
-    return float(middle)
-
-
-def _typical(speed: float, flow: str) -> float:
-    """The speed in the Reynolds number: along pipes the mean, half of the largest; else that."""
-    return speed / 2 if flow == PIPE else speed
-
-
 def _length(case: Case, across: int) -> float:
     """Size across the flow: of the box, or 1/k of a Kolmogorov flow."""
     waves, size = case.fluid.force.waves_across(), float(case.box.size[across])
     return size if waves is None else size / (2 * math.pi * waves)
-
-
-def _wavenumber(case: Case, across: int) -> float:
-    """Of the slowest shear mode."""
-    if case.walls:
-        return math.pi / case.box.size[across]
-    return (
-        1 / _length(case, across)
-        if case.fluid.force.waves_across()
-        else (2 * math.pi / case.box.size[across])
-    )
 
 
 def build_up(case: Case) -> BuildUp | None:
@@ -226,7 +238,13 @@ def _steady_time(case: Case, across: int, viscosity: float) -> float:
     pipe = recognise.pipe(case)
     if pipe is not None:
         return (pipe.radius / FIRST_ZERO) ** 2 / viscosity
-    return 1 / (viscosity * _wavenumber(case, across) ** 2)
+    if case.walls:
+        wavenumber = math.pi / case.box.size[across]  # of the slowest shear mode
+    elif case.fluid.force.waves_across():
+        wavenumber = 1 / _length(case, across)
+    else:
+        wavenumber = 2 * math.pi / case.box.size[across]
+    return 1 / (viscosity * wavenumber**2)
 
 
 def heat_caveat(case: Case, steps: int) -> str:
@@ -248,8 +266,8 @@ def heat_caveat(case: Case, steps: int) -> str:
 
 
 def _heating(case: Case, across: int, steps: int) -> tuple[float, bool] | None:
-    """Relative rise of the temperature by friction in so many steps, and whether that is a bound,
-    as walls cool the fluid by an unknown amount; None if held."""
+    """Relative rise of the temperature by friction in so many steps, and True if that is a bound,
+    as walls cool the fluid by an unknown amount; None with a thermostat."""
     found = heating(case, across)
     if found is None:
         return None
@@ -260,11 +278,3 @@ def _heating(case: Case, across: int, steps: int) -> tuple[float, bool] | None:
         for surface in wall.surfaces().values()
     )
     return found.after(time), found.steady is None and cooled
-
-
-def _observe_seconds(case: Case) -> float:
-    seconds = 0.0
-    for observable in case.observe:
-        seen = min(case.particles, getattr(observable, "particles", case.particles))
-        seconds += case.run.steps // observable.every * seen * SAMPLE
-    return seconds

@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.case.trajectory import Group, Kind
 from mesokit.geometry.solids.solids import free_volume
-from mesokit.method.mpcd.solutes import Solutes
 
 
 def groups(case: Case) -> tuple[Group, ...]:
@@ -18,24 +17,15 @@ def groups(case: Case) -> tuple[Group, ...]:
     solutes = case.solutes
     if solutes is None:
         return Group("fluid", _fluid(case), kT=float(case.fluid.kT)), Group("solutes", ())
-    kinds = tuple(
-        Kind(
-            solutes.mass_of(i), kind.number * kind.length, solutes.names[i], *_diameter(solutes, i)
-        )
-        for i, kind in enumerate(solutes.polymers)
-    )
-    kT = float(case.fluid.kT)
-    return Group("fluid", _fluid(case), kT=kT), Group("solutes", kinds, kT=kT)
-
-
-def _diameter(solutes: Solutes, kind: int) -> tuple[float, ...]:
-    """Of the beads of a kind, if they feel one another, others, or else the fluid."""
-    own, repelled = solutes.own_pair(kind), solutes.solvent_pair
-    if own is not None:
-        return (own.diameter,)
-    found = [pair.diameter for pair in solutes.pairs[kind] if pair is not None]
-    found += [2.0 * repelled.diameter] if repelled is not None else []
-    return tuple(found[:1])
+    kinds, kT = [], float(case.fluid.kT)
+    for i, polymer in enumerate(solutes.polymers):
+        # beads have a diameter if they feel one another, others, or else the fluid
+        pairs, repelled = (solutes.own_pair(i), *solutes.pairs[i]), solutes.solvent_pair
+        sizes = [pair.diameter for pair in pairs if pair is not None]
+        sizes += [2.0 * repelled.diameter] if repelled is not None else []
+        number = polymer.number * polymer.length
+        kinds.append(Kind(solutes.mass_of(i), number, solutes.names[i], *sizes[:1]))
+    return Group("fluid", _fluid(case), kT=kT), Group("solutes", tuple(kinds), kT=kT)
 
 
 def _fluid(case: Case) -> tuple[Kind, ...]:

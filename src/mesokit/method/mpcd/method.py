@@ -1,6 +1,6 @@
-"""Multi-particle collision dynamics, as the rest of the package knows it.
+"""Multi-particle collision dynamics: the record of the method, and the sections of its cases.
 
-The only file of this folder that knows engines, observables and files; nothing imports it by name.
+The only file of this folder that imports engines, observables and files; it is loaded by name.
 """
 
 from __future__ import annotations
@@ -10,40 +10,38 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mesokit.case.box import AXES
+from mesokit.case.case import Case
+from mesokit.case.component import param
+from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
 from mesokit.geometry.samples.from_file import FromFile
+from mesokit.geometry.shape import Wall
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.geometry.walls import solids
 from mesokit.method.mpcd.checks import combinations
 from mesokit.method.mpcd.columns import columns
+from mesokit.method.mpcd.derived import build_up, heat_caveat, summary
 from mesokit.method.mpcd.expected.displacement import Displacement
 from mesokit.method.mpcd.expected.neighbours import NeighboursInFluid
-from mesokit.method.mpcd.expected.setting import aperiodic_axes
+from mesokit.method.mpcd.expected.setting import closed_axes
 from mesokit.method.mpcd.expected.velocities import Velocities
 from mesokit.method.mpcd.expected.velocity_memory import VelocityMemory
+from mesokit.method.mpcd.fluid import Fluid
 from mesokit.method.mpcd.groups import bonded_pairs, groups
 from mesokit.method.mpcd.observe import Observable
 from mesokit.method.mpcd.observe.shared.density_in_slices import DensityInSlices
 from mesokit.method.mpcd.observe.shared.flow_in_slices import FlowInSlices
 from mesokit.method.mpcd.observe.shared.temperature_in_slices import TemperatureInSlices
-from mesokit.method.mpcd.sections import KEYS, Sections
+from mesokit.method.mpcd.si import convert
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.processes.world import world
+from mesokit.seam.engine import Engine
 from mesokit.seam.method import Enclosure, InitialState, Method
 from mesokit.seam.units import CELLS
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.si import SI
-    from mesokit.method.mpcd.solutes import Solutes
     from mesokit.method.mpcd.start.first_state import FirstState
-    from mesokit.seam.engine import Engine
-    from mesokit.seam.method import BuildUp, Summary
-
-
-def _summary(case: Case, threads: int | None) -> Summary:
-    from mesokit.method.mpcd.summary import summary
-
-    return summary(case, threads)
 
 
 def _first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
@@ -63,20 +61,8 @@ def _engine(case: Case, threads: int, measures: Sequence[str]) -> Engine:
     return Ranks(case, threads, measures, here.comm)
 
 
-def _build_up(case: Case) -> BuildUp | None:
-    from mesokit.method.mpcd.derived import build_up
-
-    return build_up(case)
-
-
-def _heat_caveat(case: Case, steps: int) -> str:
-    from mesokit.method.mpcd.derived import heat_caveat
-
-    return heat_caveat(case, steps)
-
-
 def _check_ranks(case: Case, ranks: int) -> None:
-    """What needs all particles in one memory, and a case with fewer cells than ranks."""
+    """Refuse cases that need all particles in one memory, or have fewer cells than ranks."""
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
     from mesokit.method.mpcd.engine.domains.blocks.tree import divided
     from mesokit.method.mpcd.engine.domains.domain import axes_to_cut
@@ -113,48 +99,35 @@ def _starts(case: Case) -> dict[str, Path]:
 
 
 def _keep_files(case: Case, folder: Path) -> Case:
-    from mesokit.io.part_files import kept, kept_part
+    from mesokit.io.part_files import kept, kept_part, kept_row
 
     case = kept_part(case, "fluid.force", folder)
     if not case.fluid.force.steady:
         case = kept_part(case, "fluid.force.of", folder)
-    case = kept_part(case, "fluid.molecule.pair", folder)
-    case = kept_part(case, "solutes.pair", folder)
-    case = kept_part(case, "solutes.wall", folder)
-    case = kept_part(case, "solutes.solvent_pair", folder)
-    if case.solutes is not None:
-        case = dataclasses.replace(case, solutes=_kept_kinds(case.solutes, folder))
+    for key in ("fluid.molecule.pair", "solutes.pair", "solutes.wall", "solutes.solvent_pair"):
+        case = kept_part(case, key, folder)
+    if (solutes := case.solutes) is not None:  # and the potentials of single kinds
+        kinds = kept_row(solutes.polymers, "pair", "polymer", folder)
+        between = kept_row(solutes.between, "pair", "between", folder)
+        if kinds is not solutes.polymers or between is not solutes.between:
+            solutes = dataclasses.replace(solutes, polymers=kinds, between=between)
+        case = dataclasses.replace(case, solutes=solutes)
     if not any(isinstance(wall, FromFile) for wall in case.walls):
         return case
     return dataclasses.replace(case, walls=kept(case.walls, solids_of(case), folder))
 
 
-def _kept_kinds(solutes: Solutes, folder: Path) -> Solutes:
-    """The solutes with the potentials of single kinds."""
-    from mesokit.io.part_files import kept_row
-
-    kinds = kept_row(solutes.polymers, "pair", "polymer", folder)
-    between = kept_row(solutes.between, "pair", "between", folder)
-    if kinds is solutes.polymers and between is solutes.between:
-        return solutes
-    return dataclasses.replace(solutes, polymers=kinds, between=between)
+KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 
 
-def _si(case: Case) -> SI:
-    from mesokit.method.mpcd.si import convert
+class Sections:
+    """What a case of MPCD has beside the sections of every case."""
 
-    return convert(case)
+    fluid: Fluid = param(Fluid(), doc="the fluid")
+    solutes: Solutes | None = param(None, doc="monomers and polymers in the fluid (none)")
+    walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")
 
 
-EXPECTED = (
-    DensityInSlices,
-    Displacement,
-    FlowInSlices,
-    NeighboursInFluid,
-    TemperatureInSlices,
-    Velocities,
-    VelocityMemory,
-)
 ARRAYS = ("positions", "velocities", "beads", "bead_velocities")
 METHOD = Method(
     name="mpcd",
@@ -165,17 +138,28 @@ METHOD = Method(
     check=combinations.check,
     groups=groups,
     bonds=bonded_pairs,
-    enclosure=Enclosure(aperiodic_axes, solids),
+    enclosure=Enclosure(lambda c: closed_axes(c) | {AXES.index(a) for a in c.box.open}, solids),
     timestep=lambda case: float(case.fluid.timestep),
-    summary=_summary,
+    summary=summary,
     initial=InitialState(_first_state, _start, ARRAYS, _starts, "fluid.start.run"),
     engine=_engine,
     keep_files=_keep_files,
-    expected={theory.answers: theory for theory in EXPECTED},
+    expected={
+        theory.answers: theory
+        for theory in (
+            DensityInSlices,
+            Displacement,
+            FlowInSlices,
+            NeighboursInFluid,
+            TemperatureInSlices,
+            Velocities,
+            VelocityMemory,
+        )
+    },
     log=columns,
-    si=_si,
-    build_up=_build_up,
-    heat_caveat=_heat_caveat,
+    si=convert,
+    build_up=build_up,
+    heat_caveat=heat_caveat,
     units=CELLS,
     check_ranks=_check_ranks,
 )

@@ -16,7 +16,7 @@ from mesokit.potential.thermal import mean_square, stiffness
 from mesokit.scalar.pointer import address
 
 PHASE = 0.15  # of the fastest oscillation in a sub-step: springs read (PHASE/2)^2 = 0.6 % too long
-COARSE = 0.7  # beyond this phase they read 12 % too long, and a case is warned about
+COARSE = 0.7  # beyond this phase they read 12 % too long, which is a warning
 UNSTABLE = 2.0  # from this phase on velocity Verlet blows up
 
 MOST_SUBSTEPS = 100_000
@@ -25,7 +25,7 @@ FLUID = "fluid"  # names the molecules of the fluid among kinds of molecules
 
 @component
 class Molecule:
-    """What every particle of the fluid is a bead of: chains, rings or stars of beads and bonds."""
+    """Chains, rings or stars of beads and bonds: every particle of the fluid is a bead of one."""
 
     topology: links.Topology = param("chain", doc="how the beads are linked")
     length: int = param(2, doc="beads of a molecule", symbol="N", ge=2, le=1000)
@@ -65,24 +65,21 @@ class Molecule:
                 f"{self.arms} times as many beads; the nearest is {1 + arm * self.arms}"
             )
         if self.propagation == "exact":
-            self._check_exact()
+            key = "propagation = 'exact'"
+            if self.length != 2 or self.bond.spring() is None:
+                raise ValueError(
+                    f"{key}: only for length = 2 and a spring without a length of its own, such "
+                    "as bond.rule = 'harmonic'"
+                )
+            for name in ("bending", "pair", "substeps"):
+                if getattr(self, name) is not None:
+                    raise ValueError(f"{key}: not with {name}; leave it out")
         if self.conformation == "octant":
             key = "conformation = 'octant'"
             if self.topology == "ring":
                 raise ValueError(f"{key}: bonds that all point one way close no ring")
             if self.bending is not None:
                 raise ValueError(f"{key}: not with bending; its bonds know nothing of angles")
-
-    def _check_exact(self) -> None:
-        key = "propagation = 'exact'"
-        if self.length != 2 or self.bond.spring() is None:
-            raise ValueError(
-                f"{key}: only for length = 2 and a spring without a length of its own, such as "
-                "bond.rule = 'harmonic'"
-            )
-        for name in ("bending", "pair", "substeps"):
-            if getattr(self, name) is not None:
-                raise ValueError(f"{key}: not with {name}; leave it out")
 
     @property
     def bonds(self) -> links.Links:
@@ -101,17 +98,24 @@ class Molecule:
 
     def mean_square_bond(self, dimension: int, kT: float) -> float | None:
         """Mean square length of a bond at rest; None where beads that are not bonded matter."""
-        alone = self.pair is None or self.length == 2
         if self.topology == "ring" and (self.bond.spring() is None or self.bending):
             return None
-        if not alone:
+        if self.pair is not None and self.length > 2:
             return None
         square = mean_square(self.bond_potentials, dimension, kT, self.bond.longest)
         return square * (1.0 - 1.0 / self.length) if self.topology == "ring" else square
 
+    @functools.lru_cache(maxsize=64)  # noqa: B019  of few molecules, which are values
     def frequency(self, dimension: int, kT: float, mass: float) -> float:
         """Angular frequency of the fastest oscillation."""
-        return _frequency(self, dimension, kT, mass)
+        bond, longest = self.bond_potentials, self.bond.longest
+        square = stiffness(bond, kT, longest) * links.stiffest_mode(self.bonds, self.length)
+        if self.bending is not None:  # four neighbours at most move against a bead
+            size = mean_square(bond, dimension, kT, longest)
+            square += 16.0 * self.bending.stiffness / size
+        if self.pair is not None and self.length > 2:
+            square += 4.0 * stiffness((self.pair.kernel(),), kT, self.pair.reach)
+        return math.sqrt(square / mass)
 
     def phase(self, dimension: int, timestep: float, kT: float, mass: float) -> float:
         """Of the fastest oscillation in one sub-step, in radians."""
@@ -125,29 +129,26 @@ class Molecule:
         """So many that the fastest oscillation turns by PHASE in each."""
         return max(1, math.ceil(self.frequency(dimension, kT, mass) * timestep / PHASE))
 
-    def _dimers(self, timestep: float, mass: float) -> Dimers:
-        spring = self.bond.spring()
-        assert spring is not None  # as `_check_exact` has seen
-        K = spring.K
-        omega = 2.0 * math.sqrt(K / mass)
-        cosine, sine = math.cos(omega * timestep), math.sin(omega * timestep)
-        swing = sine * cosine / omega
-        return Dimers(
-            beads=2,
-            cosine=cosine,
-            late=sine / omega,
-            early=-sine * omega,
-            separations=-K * (timestep + swing),
-            mixed=-K * (sine / omega) ** 2,
-            rates=-K * (timestep - swing) / omega**2,
-        )
-
     def kernel(
         self, dimension: int, timestep: float, kT: float, mass: float
     ) -> tuple[Springs | Dimers, NDArray[np.int64]]:
         """Parameters for compiled code, and the table in them that must be kept."""
         if self.propagation == "exact":
-            return self._dimers(timestep, mass), np.zeros(0, np.int64)
+            spring = self.bond.spring()
+            assert spring is not None  # as `__post_init__` has checked
+            omega = 2.0 * math.sqrt(spring.K / mass)
+            cosine, sine = math.cos(omega * timestep), math.sin(omega * timestep)
+            swing = sine * cosine / omega
+            dimers = Dimers(
+                beads=2,
+                cosine=cosine,
+                late=sine / omega,
+                early=-sine * omega,
+                separations=-spring.K * (timestep + swing),
+                mixed=-spring.K * (sine / omega) ** 2,
+                rates=-spring.K * (timestep - swing) / omega**2,
+            )
+            return dimers, np.zeros(0, np.int64)
         bends = self.angles if self.bending is not None else ()
         pairs = links.pairs(self.length) if self.pair is not None else ()
         numbers = [k for kind in (self.bonds, bends, pairs) for link in kind for k in link]
@@ -196,16 +197,3 @@ class Springs(NamedTuple):
     bond: tuple
     angle: tuple
     pair: tuple
-
-
-@functools.lru_cache(maxsize=64)
-def _frequency(molecule: Molecule, dimension: int, kT: float, mass: float) -> float:
-    """Angular frequency of the fastest oscillation."""
-    bond, longest = molecule.bond_potentials, molecule.bond.longest
-    square = stiffness(bond, kT, longest) * links.stiffest_mode(molecule.bonds, molecule.length)
-    if molecule.bending is not None:  # four neighbours at most move against a bead
-        size = mean_square(bond, dimension, kT, longest)
-        square += 16.0 * molecule.bending.stiffness / size
-    if molecule.pair is not None and molecule.length > 2:
-        square += 4.0 * stiffness((molecule.pair.kernel(),), kT, molecule.pair.reach)
-    return math.sqrt(square / mass)

@@ -56,16 +56,13 @@ class Derived(Shown):
 
     def fluid_rows(self) -> list[Row]:
         """Transport coefficients in words; the mean free path alone without a theory."""
-        known, of = self.transport or self.solvent, ""
+        known = self.transport or self.solvent
         path = ("mean free path", number(self.mean_free_path, "a"), "")
         if known is None:
             return [path]
-        parts = (
-            f"kinetic {known.viscosity_kinetic:.4g}, collisional {known.viscosity_collisional:.4g}"
-        )
-        if self.transport is None:
-            of = "without the solutes"
-            parts = f"{of}; {parts}"
+        of = "without the solutes" if self.transport is None else ""
+        parts = f"kinetic {known.viscosity_kinetic:.4g}, collisional"
+        parts = "; ".join(filter(None, [of, f"{parts} {known.viscosity_collisional:.4g}"]))
         return [
             path,
             ("kinematic viscosity", number(known.viscosity, "a^2/tau"), parts),
@@ -85,9 +82,12 @@ class Derived(Shown):
         elif self.flow_speed:
             rows = [("flow speed", number(self.flow_speed, "a/tau"), self.flow)]
             if self.reynolds is not None:
-                rows.append(("Reynolds number", number(self.reynolds), self._reynolds_of()))
+                of = "of the mean velocity and the diameter" if self.flow == PIPE else ""
+                rows.append(("Reynolds number", number(self.reynolds), of))
             if self.mach is not None:
-                rows.append(("Mach number", number(self.mach), self._mach_of()))
+                within = number(2 * self.mach / self.flow_size)  # a cell
+                at = f"at the edges of the box; {within} across a cell, where at most 0.2 is fine"
+                rows.append(("Mach number", number(self.mach), at if self.flow == SHEARED else ""))
         else:
             return []
         if self.steady_time is not None:
@@ -95,16 +95,6 @@ class Derived(Shown):
             steps += ", without obstacles" if self.flow_bound else ""
             rows.append(("time to build up", number(self.steady_time), steps))
         return rows
-
-    def _mach_of(self) -> str:
-        """Between images that move only the flow within a cell has to be slow."""
-        if self.mach is None or self.flow != SHEARED:
-            return ""
-        within = 2 * self.mach / self.flow_size
-        return f"at the edges of the box; {number(within)} across a cell, where at most 0.2 is fine"
-
-    def _reynolds_of(self) -> str:
-        return "of the mean velocity and the diameter" if self.flow == PIPE else ""
 
     def rows(self) -> list[Row]:
         """All of it in words."""

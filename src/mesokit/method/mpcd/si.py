@@ -1,7 +1,6 @@
 """A case in SI units: what its numbers mean for the real fluid, and how far the two are alike."""
 
 import math
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -100,7 +99,7 @@ class SI:
         return self.pressure * self.time
 
     def __getitem__(self, name: str) -> Number:
-        """The dimensionless number of that name; KeyError says which there are."""
+        """The dimensionless number of that name; KeyError names those that there are."""
         known = {number.name: number for number in self.numbers}
         if name not in known:
             raise KeyError(f"no number {name!r}; there are {', '.join(known)}")
@@ -112,31 +111,31 @@ class SI:
         return scales | {"numbers": {number.name: number._asdict() for number in self.numbers}}
 
     def __str__(self) -> str:
-        return "\n".join([self._title(), *_aligned(self._scales()), *_aligned(self._numbers())])
-
-    def _title(self) -> str:
-        given = self.units
-        matched = " and ".join(WORDS[name] for name in MATCHES[given.match])
-        fluid = given.fluid.title
+        fluid = self.units.fluid
+        matched = " and ".join(WORDS[name] for name in MATCHES[self.units.match])
         deep = "" if self.depth == self.length else f"; a slice {self.depth:g} m deep"
-        return f"in SI units: {fluid} at {given.fluid.temperature:g} K by its {matched}{deep}"
-
-    def _scales(self) -> Iterator[tuple[str, ...]]:
-        for name, (reduced, si) in QUANTITIES.items():
-            yield name.replace("_", " "), f"{getattr(self, name):.4g} {si}", f"for 1 {reduced}"
-        yield "whole run", f"{self.duration:.4g} s", ""
+        title = f"in SI units: {fluid.title} at {fluid.temperature:g} K by its {matched}{deep}"
+        scales = [
+            (name.replace("_", " "), f"{getattr(self, name):.4g} {si}", f"for 1 {reduced}")
+            for name, (reduced, si) in QUANTITIES.items()
+        ]
+        scales.append(("whole run", f"{self.duration:.4g} s", ""))
         if self.speed is not None:
-            yield "flow", f"{self.speed:.4g} m/s", f"across {self.size:.4g} m"
-
-    def _numbers(self) -> Iterator[tuple[str, ...]]:
-        yield "", "simulated", "real", "", ""
+            scales.append(("flow", f"{self.speed:.4g} m/s", f"across {self.size:.4g} m"))
+        numbers: list[tuple[str, ...]] = [("", "simulated", "real", "", "")]
         for n in self.numbers:
             values = ("-" if x is None else f"{x:.3g}" for x in (n.simulated, n.real))
-            yield n.name, *values, n.verdict, n.meaning
+            numbers.append((n.name, *values, n.verdict, n.meaning))
+        lines = [title]
+        for table in (scales, numbers):  # in columns
+            widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+            rows = (zip(row, widths, strict=True) for row in table)
+            lines += [f"  {'  '.join(t.ljust(w) for t, w in row)}".rstrip() for row in rows]
+        return "\n".join(lines)
 
 
 def convert(case: Case) -> SI:
-    """What a case is in SI units, as its section `units` says.
+    """A case in SI units, by its section `units`.
 
     Parameters
     ----------
@@ -172,7 +171,15 @@ def convert(case: Case) -> SI:
     given = case.units
     if given is None:
         raise CaseError("units: missing; expected what a cell and the fluid are in SI units")
-    reduced, real = _reduced(case), given.fluid.properties()
+    fluid, known, real = case.fluid, setting.transport(case), given.fluid.properties()
+    reduced = Properties(
+        setting.mass_density(case),
+        known.dynamic_viscosity if known else math.nan,
+        fluid.kT,
+        known.diffusion if known else math.nan,
+        known.sound_speed if known else math.nan,
+        setting.mean_free_path(case),
+    )
     depth = given.cell if given.depth is None else given.depth
     mass, time = _mass_and_time(given, reduced, real, depth)
     found, velocity = derive(case), given.cell / time
@@ -187,21 +194,10 @@ def convert(case: Case) -> SI:
         depth=depth,
         mass=mass,
         time=time,
-        duration=(case.run.warmup + case.run.steps) * case.fluid.timestep * time,
+        duration=(case.run.warmup + case.run.steps) * fluid.timestep * time,
         speed=same.speed if flows else None,
         size=same.size if flows else None,
         numbers=compare((flow, reduced), (same, real), case.box.dimension, flows),
-    )
-
-
-def _reduced(case: Case) -> Properties:
-    """What the simulated fluid has in reduced units."""
-    density, kT, path = setting.mass_density(case), case.fluid.kT, setting.mean_free_path(case)
-    found = setting.transport(case)
-    if found is None:
-        return Properties(density, math.nan, kT, mean_free_path=path)
-    return Properties(
-        density, found.dynamic_viscosity, kT, found.diffusion, found.sound_speed, path
     )
 
 
@@ -219,11 +215,3 @@ def _mass_and_time(
     if given.match == "mach":
         return mass, a * reduced.sound_speed / real.sound_speed
     return mass, a * math.sqrt(mass / energy)
-
-
-def _aligned(rows: Iterable[tuple[str, ...]]) -> list[str]:
-    """Rows of texts as lines, in columns."""
-    table = list(rows)
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    lines = ("  ".join(t.ljust(w) for t, w in zip(row, widths, strict=True)) for row in table)
-    return [f"  {line}".rstrip() for line in lines]

@@ -1,4 +1,4 @@
-"""Solutes: monomers and polymers in the fluid, kind by kind: what they are and what they feel."""
+"""Solutes: monomers and polymers in the fluid, kind by kind, and the potentials of their beads."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import functools
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import component, name_of, nearest, one_of, param, show
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
+from mesokit.method.mpcd.fluid import Fluid
 from mesokit.method.mpcd.molecule import MOST_SUBSTEPS, PHASE, Molecule
 from mesokit.method.mpcd.solute.external import MagneticField, Pull, Trap
 from mesokit.method.mpcd.solute.free import FreeMolecule
@@ -23,9 +24,6 @@ from mesokit.method.mpcd.topology import Links
 from mesokit.potential import Angle, Bond, Pair
 from mesokit.potential.several import several
 from mesokit.potential.thermal import effective_radius, excluded_volume, stiffness
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.fluid import Fluid
 
 
 @component
@@ -86,20 +84,18 @@ class Solutes:
 
     def __post_init__(self) -> None:
         if (self.solvent_pair is not None) != (self.coupling == "potential"):
-            missing = "missing; " if self.solvent_pair is None else "only with "
-            raise ValueError(
-                f"solvent_pair: {missing}coupling = 'potential'"
-                + (" needs it" if self.solvent_pair is None else "")
-            )
-        long = [polymer for polymer in self.polymers if polymer.length > 1]
+            if self.solvent_pair is None:
+                raise ValueError("solvent_pair: missing; coupling = 'potential' needs it")
+            raise ValueError("solvent_pair: only with coupling = 'potential'")
         for i, polymer in enumerate(self.polymers):
             if polymer.length > 1 and self.bond_of(i) is None:
                 raise ValueError(
                     f"bond: missing; polymers[#{i + 1}].length = {polymer.length} needs one"
                 )
-        if not long and self.bond is not None:
+        longest = max(polymer.length for polymer in self.polymers)
+        if longest < 2 and self.bond is not None:
             raise ValueError("bond: only with polymers of length = 2 or more")
-        if self.bending is not None and max(p.length for p in self.polymers) < 3:
+        if longest < 3 and self.bending is not None:
             raise ValueError("bending: only with polymers of length = 3 or more")
         for i in range(len(self.polymers)):
             try:
@@ -107,11 +103,6 @@ class Solutes:
             except CaseError as error:
                 words = str(error).removeprefix("Molecule.")
                 raise ValueError(f"polymers[#{i + 1}].{words}") from None
-        self._check_names()
-        self._check_between()
-
-    def _check_names(self) -> None:
-        """No two kinds of one name."""
         names = self.names
         for i, name in enumerate(names):
             if name in names[:i]:
@@ -119,9 +110,6 @@ class Solutes:
                     f"polymers[#{i + 1}].name = {name!r}: expected another than that of "
                     f"polymers[#{names.index(name) + 1}]"
                 )
-
-    def _check_between(self) -> None:
-        """Two kinds that there are, once, and a rule for all others."""
         seen = set()
         for n, between in enumerate(self.between):
             try:
@@ -141,17 +129,15 @@ class Solutes:
             if {i, j} in seen or one is None or other is None or self.pair_of(i, j) is not None:
                 continue
             raise ValueError(
-                f"between: missing; pair potentials of {self.names[i]!r} ({name_of(one)}) and "
-                f"{self.names[j]!r} ({name_of(other)}) have no rule to mix them; expected "
-                f"[[solutes.between]] with kinds = {show([self.names[i], self.names[j]])}"
+                f"between: missing; pair potentials of {names[i]!r} ({name_of(one)}) and "
+                f"{names[j]!r} ({name_of(other)}) have no rule to mix them; expected "
+                f"[[solutes.between]] with kinds = {show([names[i], names[j]])}"
             )
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What the kinds are called."""
-        return tuple(
-            polymer.name or f"polymer-{i}" for i, polymer in enumerate(self.polymers, start=1)
-        )
+        """Names of the kinds."""
+        return tuple(p.name or f"polymer-{i}" for i, p in enumerate(self.polymers, start=1))
 
     def index_of(self, kind: int | str) -> int:
         """The place of a kind, given by its name or its number from 1, in `polymers`.
@@ -209,15 +195,14 @@ class Solutes:
         return tuple(dict.fromkeys(p for row in self.pairs for p in row if p is not None))
 
     def ideal(self, kind: int) -> bool:
-        """Whether its beads feel no others but by bonds."""
+        """True if its beads feel others only by bonds."""
         return not any(self.pairs[kind])
 
     def molecule(self, kind: int) -> Molecule | None:
         """A kind as a molecule of its own; None for monomers."""
-        polymer, bond = self.polymers[kind], self.bond_of(kind)
-        if bond is None:
-            return None
-        return _molecule(polymer, bond, self.bending_of(kind), self.own_pair(kind))
+        given = self.polymers[kind], self.bending_of(kind), self.own_pair(kind)
+        bond = self.bond_of(kind)
+        return None if bond is None else _molecule(bond, *given)
 
     @property
     def beads(self) -> int:
@@ -234,7 +219,7 @@ class Solutes:
         return excluded_volume(pair.kernel(), dimension, kT, pair.reach) if pair else 0.0
 
     def radius(self, kT: float) -> float:
-        """That of the hard sphere which a bead is like for the fluid; 0 if it only collides."""
+        """Radius of the hard sphere that a bead is for the fluid; 0 if it only collides."""
         pair = self.solvent_pair
         return effective_radius(pair.kernel(), kT, pair.reach) if pair else 0.0
 
@@ -273,16 +258,15 @@ class Solutes:
 
         Bonds and other potentials, traps and the turning in magnetic fields count.
         """
-        found = [
-            molecule.frequency(dimension, kT, mass)
-            for molecule, mass in zip(self._molecules(), self.masses, strict=True)
-            if molecule is not None
-        ]
+        molecules = [(self.molecule(kind), mass) for kind, mass in enumerate(self.masses)]
+        found = [m.frequency(dimension, kT, mass) for m, mass in molecules if m is not None]
         for i, row in enumerate(self.pairs):
             for j, pair in enumerate(row[: i + 1]):
                 if pair is not None:
                     square = stiffness((pair.kernel(),), kT, pair.reach)
-                    found.append(_swing(square, self.masses[i], self.masses[j]))
+                    one, other = self.masses[i], self.masses[j]
+                    both = 2.0 * square / one if one == other else square * (1 / one + 1 / other)
+                    found.append(math.sqrt(both))
         if self.wall is not None:
             square = stiffness((self.wall.kernel(),), kT, self.wall.reach)
             found.append(math.sqrt(2.0 * square / min(self.masses)))
@@ -290,18 +274,11 @@ class Solutes:
             square = stiffness((self.solvent_pair.kernel(),), kT, self.solvent_pair.reach)
             found.append(math.sqrt(square * (1.0 / min(self.masses) + 1.0 / lightest)))
         found += [math.sqrt(trap.k / self.masses[self.index_of(trap.kind)]) for trap in self.traps]
-        return max(*found, self.largest_turning(), 0.0)
-
-    def largest_turning(self) -> float:
-        """Largest angular frequency q B/m at which magnetic fields turn a bead's velocity."""
-        turning = np.zeros((self.beads, 3))
+        turning = np.zeros((self.beads if self.magnetic else 1, 3))  # q B/m of each bead
         for magnetic in self.magnetic:
             mass = self.masses[self.index_of(magnetic.kind)]
             turning[magnetic.beads(self)] += magnetic.charge / mass * np.array(magnetic.field)
-        return float(np.linalg.norm(turning, axis=1).max()) if self.magnetic else 0.0
-
-    def _molecules(self) -> list[Molecule | None]:
-        return [self.molecule(kind) for kind in range(len(self.polymers))]
+        return max([*found, float(np.linalg.norm(turning, axis=1).max())])
 
     def needed_substeps(self, dimension: int, fluid: Fluid) -> int:
         """So many that the fastest motion turns by PHASE in each."""
@@ -372,11 +349,6 @@ def _kernels(potentials: Sequence[Any], all_of_them: bool = False) -> tuple[Any,
     return tuple(given.values()) if len(given) == 1 else (several(kernels),)
 
 
-def _swing(square: float, one: float, other: float) -> float:
-    """Angular frequency of two masses on a spring constant."""
-    return math.sqrt(2.0 * square / one if one == other else square * (1.0 / one + 1.0 / other))
-
-
 class Potentials(NamedTuple):
     """What beads feel: (potential,) or () for each of bond, angle, pair and wall.
 
@@ -392,7 +364,7 @@ class Potentials(NamedTuple):
 
 
 @functools.lru_cache(maxsize=64)
-def _molecule(polymer: Polymer, bond: Bond, bending: Angle | None, pair: Pair | None) -> Molecule:
+def _molecule(bond: Bond, polymer: Polymer, bending: Angle | None, pair: Pair | None) -> Molecule:
     if polymer.topology == "free":
         return FreeMolecule(
             topology="free",

@@ -3,9 +3,11 @@
 A bond leads from a bead that is placed to one that is not, but for the last of a ring.
 """
 
+import itertools
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 Topology = Literal["chain", "ring", "star", "free"]
 Links = tuple[tuple[int, ...], ...]
@@ -42,7 +44,16 @@ def pairs(length: int) -> Links:
     >>> pairs(3)
     ((0, 1), (0, 2), (1, 2))
     """
-    return tuple((i, j) for i in range(length) for j in range(i + 1, length))
+    return tuple(itertools.combinations(range(length), 2))
+
+
+def connectivity(links: Links, length: int) -> NDArray[np.float64]:
+    """Matrix (length, length) of the force constants of springs between beads, each of 1."""
+    matrix = np.zeros((length, length))
+    for i, j in links:
+        matrix[[i, j], [i, j]] += 1.0
+        matrix[[i, j], [j, i]] -= 1.0
+    return matrix
 
 
 def stiffest_mode(links: Links, length: int) -> float:
@@ -51,8 +62,4 @@ def stiffest_mode(links: Links, length: int) -> float:
     >>> round(stiffest_mode(bonds("chain", 2), 2), 9), round(stiffest_mode(bonds("ring", 4), 4), 9)
     (2.0, 4.0)
     """
-    matrix = np.zeros((length, length))
-    for i, j in links:
-        matrix[[i, j], [i, j]] += 1.0
-        matrix[[i, j], [j, i]] -= 1.0
-    return float(np.linalg.eigvalsh(matrix)[-1])
+    return float(np.linalg.eigvalsh(connectivity(links, length))[-1])

@@ -1,19 +1,19 @@
-"""What `check` and `run` warn of: cases that can run, and may not give what was meant."""
+"""Warnings of `check` and `run`: cases that can run, and may not give what was meant."""
 
-from __future__ import annotations
-
+import contextlib
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mesokit import theory
 from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.case.component import name_of
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.samples.from_file import FromFile
-from mesokit.geometry.solids.solids import solids_of
+from mesokit.geometry.solids.solids import slit_of, solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
 from mesokit.method.mpcd.expected.molecules import (
@@ -24,11 +24,7 @@ from mesokit.method.mpcd.expected.molecules import (
     without_solutes,
 )
 from mesokit.method.mpcd.molecule import COARSE
-from mesokit.method.mpcd.numbers import PIPE, TIMES
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.numbers import Derived
+from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 
 COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solids
 SLIPPERY = 0.03  # slip length in cells
@@ -39,7 +35,7 @@ STRONG = 0.3  # thermal velocities that a force may add in a timestep
 
 
 def cautions(case: Case, numbers: Derived, across: int) -> Iterator[str]:
-    """What one should know before a run; `across` is the number of the axis across the flow."""
+    """Warnings before a run; `across` is the number of the axis across the flow."""
     yield from _method_warnings(case, numbers)
     yield from _solid_warnings(case)
     yield from _flow_warnings(case, numbers, across)
@@ -105,8 +101,7 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
         )
     if transport is None:
         reason = setting.caveat(case) or "no formula for this fluid"
-        lacking = _without_theory(case)
-        if lacking:
+        if lacking := _without_theory(case):
             yield f"transport coefficients: {reason}; {lacking}"
     elif case.box.dimension == 2 and _above(7, transport.dynamic_viscosity, 3):
         yield (
@@ -199,8 +194,12 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
             f"acceleration x length/(kT/m) = {pressed[1]:.2g} (above {COMPRESSED:g}); measure it "
             "with density-gradient, lower the force"
         )
-    slip = setting.slip_length(case)
-    if slip is not None and slip > SLIPPERY and (numbers.flow_speed or sheared):
+    plates, rule, slip = slit_of(case), fluid.collision.in_theory(), 0.0
+    beside = plates is not None and not plates.slips and plates.virtual == "extrapolate"
+    if beside and rule is not None and not setting.caveat(case) and fluid.thermostat.in_theory:
+        with contextlib.suppress(ValueError):  # of rules that conserve angular momentum
+            slip = theory.virtual_gas_slip(**rule, **setting.gas(case)._asdict())
+    if slip > SLIPPERY and (numbers.flow_speed or sheared):
         yield (
             f"wall: in so thin a fluid plates slip, by a length of some {slip:.2g} cells: virtual "
             "particles know nothing of its stress; more particles or a shorter timestep help"
@@ -216,12 +215,10 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     random = case.solutes is not None and case.solutes.solvent == "random"
     for axis, acceleration in zip(AXES, setting.uniform_acceleration(case).tolist(), strict=False):
         if acceleration and not case.walls and not random:
+            heats = "" if setting.isothermal(case) else " (without a thermostat it also heats)"
             yield (
-                f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
-                "walls it speeds up for ever (without a thermostat it also heats)"
-                if not setting.isothermal(case)
-                else f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
-                "walls it speeds up for ever"
+                f"fluid.force.acceleration: nothing holds the fluid along {axis}: without walls it "
+                f"speeds up for ever{heats}"
             )
         elif acceleration and AXES.index(axis) in setting.closed_axes(case):
             drop = fluid.mass * abs(acceleration) * case.box.size[across] / fluid.kT
@@ -242,8 +239,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
             * most
         )
     if numbers.reynolds is not None:
-        # as it is shown: 1.4 is not above 1.4
-        shown = float(f"{numbers.reynolds:.2g}")
+        shown = float(f"{numbers.reynolds:.2g}")  # 1.4 is not above 1.4
         if numbers.flow == PIPE and shown > TURBULENT:
             yield (
                 f"Reynolds number {shown:g}: above some {TURBULENT:g} the flow along a pipe is "
@@ -261,11 +257,19 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 f"{math.ceil(TIMES * numbers.steady_time / fluid.timestep)} steps from rest to its "
                 "steady state; observables will average over the start"
             )
-    yield from _start_of_shear(case, numbers)
+    wait = 0
+    if numbers.relaxation is not None and (case.box.steady_rate or case.box.oscillation):
+        wait = math.ceil(3 * numbers.relaxation[0] / fluid.timestep)
+    # molecules start at rest, and take a few relaxation times to follow the shear
+    if case.run.warmup < wait and case.run.steps and case.observe and fluid.start.run is None:
+        yield (
+            f"run.warmup = {case.run.warmup}: molecules need about {wait} steps (3 relaxation "
+            "times) until shear has turned and stretched them; observables will average over the "
+            "start"
+        )
 
 
 def _net_pull(case: Case) -> Iterator[str]:
-    """Forces on solutes that nothing balances."""
     solutes = case.solutes
     if solutes is None or case.walls or solutes.traps or solutes.solvent == "random":
         return
@@ -277,20 +281,6 @@ def _net_pull(case: Case) -> Iterator[str]:
         yield (
             f"solutes.pulls: together they pull along {' and '.join(along)}, and nothing holds the "
             "fluid: without walls or a second force the whole box speeds up for ever"
-        )
-
-
-def _start_of_shear(case: Case, numbers: Derived) -> Iterator[str]:
-    """Molecules start at rest, and take a few relaxation times to follow the shear."""
-    start = case.fluid.start.run
-    if numbers.relaxation is None or not (case.box.steady_rate or case.box.oscillation):
-        return
-    wait = math.ceil(3 * numbers.relaxation[0] / case.fluid.timestep)
-    if case.run.warmup < wait and case.run.steps and case.observe and start is None:
-        yield (
-            f"run.warmup = {case.run.warmup}: molecules need about {wait} steps (3 relaxation "
-            "times) until shear has turned and stretched them; observables will average over the "
-            "start"
         )
 
 

@@ -2,22 +2,26 @@
 
 import math
 from collections.abc import Callable, Iterator
+from typing import Any
 
 from mesokit.case.amounts import count_text
 from mesokit.case.case import Case
 from mesokit.case.checks import whole_cells
 from mesokit.case.component import name_of, show
+from mesokit.case.outside import is_outside
+from mesokit.case.registry import address
 from mesokit.case.units import MATCHES
 from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.geometry.walls import surfaces
-from mesokit.method.mpcd.checks.free_flight import free_flight, open_box
-from mesokit.method.mpcd.checks.kernels import kernels
+from mesokit.geometry.walls import room, surfaces
 from mesokit.method.mpcd.checks.solutes import solutes
-from mesokit.method.mpcd.checks.walls import moving_surfaces, room, walls
+from mesokit.method.mpcd.checks.walls import moving_surfaces, walls
+from mesokit.method.mpcd.collision.protocol import coefficients, collide, contribute, freedom
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.method.mpcd.molecule import COARSE, MOST_SUBSTEPS, UNSTABLE
+from mesokit.method.mpcd.thermostat.protocol import target
 from mesokit.potential.thermal import mean_square
 
 MOST_CELLS = MOST_PARTICLES = 2**53  # whole numbers that floats can tell apart
@@ -67,7 +71,14 @@ def check_mean_free_path(case: Case) -> Iterator[str]:
 
 def vectors(case: Case) -> Iterator[str]:
     """One number for each axis."""
-    for key, vector in _vectors(case):
+    given = [(f"fluid.force.{key}", vector) for key, vector in case.fluid.force.vectors().items()]
+    for i, wall in enumerate(case.walls):
+        if case.box.dimension in wall.dimensions:
+            given += [(f"wall[#{i + 1}].{key}", vector) for key, vector in wall.vectors().items()]
+    given += [
+        (f"{key}.velocity", s.velocity) for key, s, _ in surfaces(case) if s.velocity is not None
+    ]
+    for key, vector in given:
         if len(vector) != case.box.dimension:
             yield (
                 f"{key} = {show(vector)}: expected {case.box.dimension} numbers, "
@@ -90,7 +101,7 @@ def axes(case: Case) -> Iterator[str]:
 
 
 def collision(case: Case) -> Iterator[str]:
-    """Angles that the dimension allows, and no second thermostat."""
+    """Angles that the dimension allows, no second thermostat, species, shear and solutes."""
     rule, thermostat = case.fluid.collision, case.fluid.thermostat
     for problem in rule.problems(case.box.dimension):
         yield f"fluid.collision.{problem}"
@@ -99,13 +110,7 @@ def collision(case: Case) -> Iterator[str]:
             f"fluid.thermostat.rule = {show(name_of(thermostat))}: collision rule "
             f"{show(name_of(rule))} is its own thermostat; leave the thermostat out"
         )
-    yield from neighbours(case)
-
-
-def neighbours(case: Case) -> Iterator[str]:
-    """What a rule that looks at neighbouring cells, or tells species apart, can have."""
-    rule, species = case.fluid.collision, len(case.fluid.species)
-    name = show(name_of(rule))
+    species, name = len(case.fluid.species), show(name_of(rule))
     if rule.kinds is not None and species != rule.kinds:
         yield f"fluid.species: {species} of them; collision rule {name} needs {rule.kinds}"
     if rule.gradient_of is None:
@@ -114,6 +119,51 @@ def neighbours(case: Case) -> Iterator[str]:
         yield f"{case.box.shear_key}: not with collision rule {name}; move a plate to shear a slit"
     if case.solutes is not None:
         yield f"solutes: not with collision rule {name}, which knows two species of the fluid alone"
+
+
+def free_flight(case: Case) -> Iterator[str]:
+    """Nothing that needs collisions."""
+    fluid, rule = case.fluid, show(name_of(case.fluid.collision))
+    if fluid.collision.acts:
+        return
+    if fluid.thermostat.acts:
+        yield (
+            f"fluid.thermostat.rule = {show(name_of(fluid.thermostat))}: acts in collisions, and "
+            f"collision rule {rule} has none; leave the thermostat out"
+        )
+    if case.box.sheared:
+        yield (
+            f"{case.box.shear_key}: not with collision rule {rule}, "
+            "which carries no shear from particle to particle"
+        )
+    if case.solutes is not None and case.solutes.solvent == "random":
+        yield (
+            f"solutes.solvent = 'random': acts in collisions, and collision rule {rule} has "
+            "none; use 'fluid'"
+        )
+
+
+def open_box(case: Case) -> Iterator[str]:
+    """No bounds but for particles that fly freely, and nothing at them."""
+    given, box = f"box.open = {show(list(case.box.open))}", case.box
+    if not box.open:
+        return
+    for axis in box.open:
+        if axis not in box.axes:
+            yield f"{given}: a 2D box has only 'x' and 'y'"
+    if case.fluid.collision.acts:
+        rule = show(name_of(case.fluid.collision))
+        yield f"{given}: only with collision rule 'none'; cells of rule {rule} need a periodic box"
+    for i, wall in enumerate(case.walls):
+        yield f"{given}: not with wall[#{i + 1}].shape = {show(name_of(wall))}; leave one out"
+    if case.solutes is not None:
+        yield f"{given}: not with solutes; leave one of both out"
+    for i, observable in enumerate(case.observe):
+        if not observable.in_open_box:
+            yield (
+                f"observe[#{i + 1}].quantity = {show(name_of(observable))}: not with {given}; it "
+                "needs particles that are in the box"
+            )
 
 
 def force(case: Case) -> Iterator[str]:
@@ -146,10 +196,10 @@ def shear(case: Case) -> Iterator[str]:
             yield f"{key}: not with wall[#{i + 1}].shape = {shape}; only with one slit"
         elif wall.axis in ("x", "y"):
             yield f"{key}: not with walls across {wall.axis}; move a plate to shear a slit"
-    acceleration = rule.uniform(case.box.dimension)
-    if acceleration is None:
+    uniform = rule.uniform(case.box.dimension)
+    if uniform is None:
         yield f"{key}: not with fluid.force.rule = {show(name_of(rule))}"
-    elif acceleration[1] != 0:
+    elif uniform[1] != 0:
         yield f"{key}: not with fluid.force.acceleration along y, the gradient of the shear"
 
 
@@ -201,6 +251,35 @@ def molecule(case: Case) -> Iterator[str]:
             )
 
 
+def kernels(case: Case) -> Iterator[str]:
+    """Functions that the compiled code of a rule, thermostat or force from outside needs."""
+    fluid, d = case.fluid, case.box.dimension
+    rule, bath, force = fluid.collision, fluid.thermostat, fluid.force
+    needed: tuple[tuple[str, Any, Callable[[], Any], tuple[Any, ...]], ...] = (
+        (
+            "collision",
+            rule,
+            lambda: rule.kernel(d, fluid.kT),
+            (contribute, freedom, coefficients, collide),
+        ),
+        ("thermostat", bath, lambda: bath.kernel(fluid.kT, 0.0), (target,)),
+        ("force", force, lambda: force.kernel(case.box.size), (acceleration,)),
+    )
+    for key, part, kernel, functions in needed:
+        if not is_outside(part):
+            continue
+        place = address(type(part))
+        try:
+            kind = type(kernel())
+        except Exception as error:
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            yield f"fluid.{key}: {place} has no parameters for its kernel: {reason}"
+            continue
+        for function in functions:
+            if kind not in function.implementations and not function.others:
+                yield f"fluid.{key}: {place} registers no {function.__name__} for {kind.__name__}"
+
+
 def check_start(case: Case) -> Iterator[str]:
     """Arrays, an earlier run or a file."""
     for owner in ("fluid", "solutes"):
@@ -239,7 +318,7 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     cells,
     vectors,
     walls,
-    room,
+    lambda case: room(case, "fluid"),
     moving_surfaces,
     size,
     check_mean_free_path,
@@ -254,15 +333,3 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     units,
     kernels,
 )
-
-
-def _vectors(case: Case) -> Iterator[tuple[str, tuple[float, ...]]]:
-    for key, vector in case.fluid.force.vectors().items():
-        yield f"fluid.force.{key}", vector
-    for i, wall in enumerate(case.walls):
-        if case.box.dimension in wall.dimensions:
-            for key, vector in wall.vectors().items():
-                yield f"wall[#{i + 1}].{key}", vector
-    for key, surface, _ in surfaces(case):
-        if surface.velocity is not None:
-            yield f"{key}.velocity", surface.velocity

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from mesokit.case.case import Case
 from mesokit.case.component import name_of, one_of, show
 from mesokit.case.registry import family_of
+from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import free_volume
-from mesokit.method.mpcd.checks.external import external
 from mesokit.method.mpcd.molecule import FLUID, MOST_SUBSTEPS, UNSTABLE
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.potential.thermal import mean_square
@@ -23,7 +23,16 @@ def solutes(case: Case) -> Iterator[str]:
     if given is None:
         return
     if case.fluid.molecule is not None:
-        yield from _among_molecules(given)
+        for key, value in (("coupling", "potential"), ("solvent", "random")):
+            if getattr(given, key) == value:
+                here = f"solutes.{key} = {show(value)}"
+                yield f"{here}: not with fluid.molecule; leave one of both out"
+        if FLUID in given.names:
+            place = 1 + given.names.index(FLUID)
+            yield (
+                f"solutes.polymers[#{place}].name = {show(FLUID)}: this names the molecules of the "
+                "fluid (fluid.molecule); expected another name"
+            )
     if given.beads > MOST_BEADS:
         yield f"solutes.polymers: {given.beads} beads; expected at most {MOST_BEADS}"
     yield from _sizes(case, given)
@@ -35,21 +44,8 @@ def solutes(case: Case) -> Iterator[str]:
         yield from _potential(case, given)
 
 
-def _among_molecules(given: Solutes) -> Iterator[str]:
-    """Beads that collide with a fluid of molecules, and names that are not those of the fluid."""
-    for key, value in (("coupling", "potential"), ("solvent", "random")):
-        if getattr(given, key) == value:
-            yield f"solutes.{key} = {show(value)}: not with fluid.molecule; leave one of both out"
-    if FLUID in given.names:
-        place = 1 + given.names.index(FLUID)
-        yield (
-            f"solutes.polymers[#{place}].name = {show(FLUID)}: this names the molecules of the "
-            "fluid (fluid.molecule); expected another name"
-        )
-
-
 def _sizes(case: Case, given: Solutes) -> Iterator[str]:
-    """No bead that sees two images of another, no bond that could lead to either of two."""
+    """No bead that interacts with two images of another, no bond that could lead to either."""
     closed = closed_axes(case.walls)
     lengths = dict(zip(case.box.axes, case.box.size, strict=True))
     shortest = min((n for axis, n in lengths.items() if axis not in closed), default=math.inf)
@@ -87,7 +83,6 @@ def _sizes(case: Case, given: Solutes) -> Iterator[str]:
 
 
 def _substeps(case: Case, given: Solutes) -> Iterator[str]:
-    """Sub-steps short enough for the stiffest spring."""
     fluid, d = case.fluid, case.box.dimension
     need = given.needed_substeps(d, fluid)
     if given.substeps is None:
@@ -149,3 +144,43 @@ def _potential(case: Case, given: Solutes) -> Iterator[str]:
             f"{given.beads * excluded:.4g} of {room:.4g} cells; expected at most "
             f"{MOST_EXCLUDED:.0%}: fewer or smaller beads"
         )
+
+
+def external(case: Case, given: Solutes) -> Iterator[str]:
+    """Errors: unknown beads, vectors of a wrong length, traps in a sheared box or too stiff."""
+    d, lists = case.box.dimension, ("pulls", "traps", "magnetic")
+    for name in lists:
+        for i, part in enumerate(getattr(given, name)):
+            key = f"solutes.{name}[#{i + 1}]"
+            try:
+                part.beads(given)
+            except CaseError as error:
+                yield f"{key}.{error}"
+            for vector in ("force", "centre"):
+                value = getattr(part, vector, None)
+                if value is not None and len(value) != d:
+                    yield f"{key}.{vector} = {show(value)}: expected {d} numbers, one for each axis"
+            centre = getattr(part, "centre", ())
+            for axis, place, length in zip(case.box.axes, centre, case.box.size, strict=False):
+                if axis not in case.box.open and not 0 <= place <= length:
+                    yield (
+                        f"{key}.centre = {show(centre)}: outside the box along {axis}; expected 0 "
+                        f"to {length:g}"
+                    )
+            if name != "pulls" and case.box.sheared:
+                yield f"{key}: not in a sheared box, whose images move"
+            if given.coupling == "potential":
+                yield f"{key}: not with solutes.coupling = 'potential'"
+    for i, field in enumerate(given.magnetic):
+        if d == 2 and any(field.field[:2]):
+            yield (
+                f"solutes.magnetic[#{i + 1}].field = {show(field.field)}: expected [0, 0, B] in 2D"
+            )
+    for i, trap in enumerate(given.traps):
+        time = case.fluid.timestep / given.number_of_substeps(d, case.fluid)
+        phase = (trap.k / min(given.masses)) ** 0.5 * time
+        if phase >= UNSTABLE:
+            yield (
+                f"solutes.traps[#{i + 1}].k = {show(trap.k)}: it turns by {phase:.3g} rad in a "
+                f"sub-step and is unstable from {UNSTABLE:g} on; take more solutes.substeps"
+            )

@@ -7,7 +7,6 @@ from mesokit.case.component import show
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.geometry.walls import Walls, surfaces
-from mesokit.geometry.walls import room as room_left
 
 WALLS = Walls(("no-slip", "slip", "diffuse"), moving=True, turning=True, virtual=True)
 
@@ -23,11 +22,6 @@ def walls(case: Case) -> Iterator[str]:
             )
     if case.fluid.mixed and any(wall.virtual == "top-up" for wall in case.walls):
         yield "wall[#1].virtual = 'top-up': not with species of different mass; use 'extrapolate'"
-
-
-def room(case: Case) -> Iterator[str]:
-    """Solids that leave room, and fit the periodic box."""
-    return room_left(case, "fluid")
 
 
 def moving_surfaces(case: Case) -> Iterator[str]:

@@ -18,7 +18,7 @@ from mesokit.method.mpcd.collision.protocol import (
 )
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import PARTICLE_VELOCITY, normals, words
-from mesokit.scalar.vector import scaled
+from mesokit.scalar.vector import added, scaled
 
 
 @component
@@ -36,24 +36,20 @@ class AT(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 80.0, 3: 58.0}
 
     def kernel(self, dimension: int, kT: float) -> AT2 | AT3:
-        """Parameters for the scalar functions below."""
         return AT2(kT) if dimension == 2 else AT3(kT)
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
-        """The momentum of the drawn velocities."""
         return ("momentum",) * dimension
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
         return dimension
 
     def in_theory(self) -> dict[str, Any]:
-        """The name by which `mesokit.theory` knows it."""
         return {"rule": "at"}
 
     def bead_diffusion(
         self, gas: Gas, mass: float, others: Sequence[tuple[float, float]] = ()
     ) -> float:
-        """Diffusion coefficient of a bead of this mass in the gas, among others."""
         return theory.bead_diffusion(
             "at", gas.dimension, gas.density, gas.timestep, None, mass, gas.kT, gas.mass, *others
         )
@@ -75,56 +71,22 @@ class AT3(NamedTuple):
 def thermal_velocity(counter, key, kT, m, pattern):
     """A velocity from the Maxwell distribution, with as many components as `pattern`."""
     a, b, c, d = words(counter, PARTICLE_VELOCITY, key[0], key[1])
-    x = normals(pattern, a, b, c, d)
-    width = math.sqrt(kT / m)
-    return scaled(width, x)
+    return scaled(math.sqrt(kT / m), normals(pattern, a, b, c, d))
 
 
-@contribute.register(AT2)
+@contribute.register(AT2, AT3)
 def _(rule, counter, key, m, v, r):
     w = thermal_velocity(counter, key, rule.kT, m, v)
-    return w, (m * w[0], m * w[1])
+    return w, scaled(m, w)
 
 
-@contribute.register(AT3)
-def _(rule, counter, key, m, v, r):
-    w = thermal_velocity(counter, key, rule.kT, m, v)
-    return w, (m * w[0], m * w[1], m * w[2])
+freedom.register(AT2)(lambda rule, n: 2.0 * (n - 1.0))
+freedom.register(AT3)(lambda rule, n: 3.0 * (n - 1.0))
 
 
-@freedom.register(AT2)
-def _(rule, n):
-    return 2.0 * (n - 1.0)
-
-
-@freedom.register(AT3)
-def _(rule, n):
-    return 3.0 * (n - 1.0)
-
-
-@coefficients.register(AT2)
+@coefficients.register(AT2, AT3)
 def _(rule, thermostat, variate, chance, cell):
-    mass, momentum, sums = cell.mass, cell.momentum, cell.sums
-    share = 1.0 / mass
-    return (momentum[0] - sums[0]) * share, (momentum[1] - sums[1]) * share
+    return scaled(1.0 / cell.mass, added(cell.momentum, scaled(-1.0, cell.sums)))
 
 
-@coefficients.register(AT3)
-def _(rule, thermostat, variate, chance, cell):
-    mass, momentum, sums = cell.mass, cell.momentum, cell.sums
-    share = 1.0 / mass
-    return (
-        (momentum[0] - sums[0]) * share,
-        (momentum[1] - sums[1]) * share,
-        (momentum[2] - sums[2]) * share,
-    )
-
-
-@collide.register(AT2)
-def _(rule, c, v, r):
-    return v[0] + c[0], v[1] + c[1]
-
-
-@collide.register(AT3)
-def _(rule, c, v, r):
-    return v[0] + c[0], v[1] + c[1], v[2] + c[2]
+collide.register(AT2, AT3)(lambda rule, c, v, r: added(v, c))

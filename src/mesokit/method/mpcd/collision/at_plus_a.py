@@ -38,7 +38,6 @@ class ATPlusA(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 60.0, 3: 33.0}
 
     def kernel(self, dimension: int, kT: float) -> ATPlusA2 | ATPlusA3:
-        """Parameters for the scalar functions below."""
         return ATPlusA2(kT) if dimension == 2 else ATPlusA3(kT)
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
@@ -52,7 +51,6 @@ class ATPlusA(CollisionRule):
         return 3 if dimension == 2 else 6
 
     def in_theory(self) -> dict[str, Any]:
-        """The name by which `mesokit.theory` knows it."""
         return {"rule": "at+a"}
 
 
@@ -83,14 +81,8 @@ def _(rule, counter, key, m, v, r):
     return w, (scaled(m, w) + scaled(m, r) + scaled(m, second_moment(r)) + scaled(m, lost))
 
 
-@freedom.register(ATPlusA2)
-def _(rule, n):
-    return 2.0 * (n - 1.0) - 1.0
-
-
-@freedom.register(ATPlusA3)
-def _(rule, n):
-    return 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0)
+freedom.register(ATPlusA2)(lambda rule, n: 2.0 * (n - 1.0) - 1.0)
+freedom.register(ATPlusA3)(lambda rule, n: 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0))
 
 
 @coefficients.register(ATPlusA2)

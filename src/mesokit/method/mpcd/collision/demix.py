@@ -16,8 +16,8 @@ from mesokit.method.mpcd.collision.protocol import (
     contribute,
     freedom,
 )
+from mesokit.method.mpcd.collision.srd import turned_cell, turned_in_plane
 from mesokit.method.mpcd.thermostat.protocol import stretch
-from mesokit.scalar.intrinsics import mul_add
 from mesokit.scalar.jit import optional, scalar
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
@@ -53,12 +53,10 @@ class Demix(CollisionRule):
         return kind(self.coupling / math.sqrt(kT), 2**60, 2**60)
 
     def among(self, kernel: Any, counts: tuple[int, ...], mass: float) -> Turning2 | Turning3:
-        """The parameters for so many particles of each kind."""
         strength = kernel.strength / (mass * math.sqrt(mass))
         return type(kernel)(strength, counts[0], sum(counts))
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
-        """Mass times colour, and its momentum."""
         return ("mass",) + ("momentum",) * dimension
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
@@ -94,14 +92,8 @@ def _(rule, counter, key, m, v, r):
     return v, ((charge,) + scaled(charge, v))
 
 
-@freedom.register(Turning2)
-def _(rule, n):
-    return 2.0 * (n - 1.0)
-
-
-@freedom.register(Turning3)
-def _(rule, n):
-    return 3.0 * (n - 1.0)
+freedom.register(Turning2)(lambda rule, n: 2.0 * (n - 1.0))
+freedom.register(Turning3)(lambda rule, n: 3.0 * (n - 1.0))
 
 
 @coefficients.register(Turning2)
@@ -114,10 +106,7 @@ def _(rule, thermostat, variate, chance, cell):
     length = math.sqrt(flux[0] * flux[0] + flux[1] * flux[1])
     inverse = 1.0 / length if length > 0.0 else 0.0
     a, b = flux[0] * inverse if length > 0.0 else 1.0, flux[1] * inverse
-    cos, sin = x * a + y * b, y * a - x * b
-    relative = cell.energy - cell.mass * (u[0] * u[0] + u[1] * u[1])
-    s = optional(stretch(thermostat, variate, freedom(rule, cell.number), 0.5 * relative), 1.0)
-    return u[0], u[1], s * cos, s * sin
+    return turned_cell(rule, thermostat, variate, cell, x * a + y * b, y * a - x * b)
 
 
 @coefficients.register(Turning3)
@@ -131,11 +120,7 @@ def _(rule, thermostat, variate, chance, cell):
     return u + turn + s
 
 
-@collide.register(Turning2)
-def _(rule, c, v, r):
-    wx, wy = v[0] - c[0], v[1] - c[1]
-    x = mul_add(c[2], wx, mul_add(-c[3], wy, c[0]))
-    return x, mul_add(c[3], wx, mul_add(c[2], wy, c[1]))
+collide.register(Turning2)(turned_in_plane)
 
 
 @collide.register(Turning3)

@@ -25,11 +25,9 @@ class NoCollision(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 280.0, 3: 190.0}
 
     def kernel(self, dimension: int, kT: float) -> Uncollided:
-        """Parameters for the scalar functions below."""
         return Uncollided()
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
-        """None."""
         return ()
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
@@ -41,21 +39,13 @@ class Uncollided(NamedTuple):
     """No collision."""
 
 
-@contribute.register(Uncollided)
-def _(rule, counter, key, m, v, r):
-    return v, ()
+contribute.register(Uncollided)(lambda rule, counter, key, m, v, r: (v, ()))
 
 
-@freedom.register(Uncollided)
-def _(rule, n):
-    return 0.0
+freedom.register(Uncollided)(lambda rule, n: 0.0)
 
 
-@coefficients.register(Uncollided)
-def _(rule, thermostat, variate, chance, cell):
-    return (0.0,)
+coefficients.register(Uncollided)(lambda rule, thermostat, variate, chance, cell: (0.0,))
 
 
-@collide.register(Uncollided)
-def _(rule, c, v, r):
-    return v
+collide.register(Uncollided)(lambda rule, c, v, r: v)

@@ -1,6 +1,6 @@
-"""What a collision rule answers: a few questions, each for one particle or one cell.
+"""Protocol of collision rules: a few functions, each of one particle or one cell.
 
-`CollisionRule` is what a case holds: parameters, and what others ask of the rule. Over the
+`CollisionRule` is the part of a case: parameters, and properties of the rule. Over the
 particles of a cell the execution layer sums, for every rule, their number, mass, momentum m v and
 m v^2; a rule adds sums of its own. `r` is a position relative to the centre of the shifted cell.
 The first argument is the rule's NamedTuple of parameters; its class picks the implementation.
@@ -38,7 +38,7 @@ class CollisionRule(ABC):
 
     acts: ClassVar[bool] = True  # False: particles never meet
     conserves: ClassVar[tuple[str, ...]] = ()  # "mass", "momentum", "energy", "angular momentum"
-    needs_energy: ClassVar[bool] = False  # whether `coefficients` asks for the sum of m v^2
+    needs_energy: ClassVar[bool] = False  # whether `coefficients` needs the sum of m v^2
     isothermal: ClassVar[bool] = False  # whether it holds the temperature itself
     one_temperature: ClassVar[bool] = True  # of all kinds of particles in a mixture
     # which of its own sums `coefficients` is to have the gradient of, over neighbouring cells
@@ -58,7 +58,7 @@ class CollisionRule(ABC):
 
     @abstractmethod
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
-        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
+        """Number of results of `coefficients`; `stretched`: a thermostat acts."""
 
     def among(self, kernel: Any, counts: tuple[int, ...], mass: float) -> Any:
         """The kernel for so many particles of each species, numbered in turn; mean mass."""
@@ -69,22 +69,18 @@ class CollisionRule(ABC):
         yield from ()
 
     def in_theory(self) -> dict[str, Any] | None:
-        """The name and angle by which `mesokit.theory` knows it; None if it does not."""
+        """Its name and angle in `mesokit.theory`; None without a theory."""
         return None
 
     def transport(self, gas: Gas) -> theory.Transport | None:
         """Transport coefficients; None without a theory. May raise ValueError for odd numbers."""
-        known = self.in_theory()
-        if known is None or gas.thermostat is None:
-            return None
-        return theory.transport(**known, **gas._asdict())
+        known = self.in_theory() if gas.thermostat is not None else None
+        return None if known is None else theory.transport(**known, **gas._asdict())
 
     def shear_warming(self, gas: Gas) -> float | None:
         """Rise of the temperature of a held gas, over mass and squared shear rate."""
-        known = self.in_theory()
-        if known is None or gas.thermostat is None:
-            return None
-        return theory.shear_warming(**known, **gas._asdict())
+        known = self.in_theory() if gas.thermostat is not None else None
+        return None if known is None else theory.shear_warming(**known, **gas._asdict())
 
     def heat_at_walls(self, gas: Gas) -> theory.HeatAtWalls | None:
         """Conductivity of heat, and jump of the temperature at walls, of a gas that is not held."""
@@ -96,11 +92,7 @@ class CollisionRule(ABC):
         if known is None or gas.thermostat is None:
             return 0.0
         return theory.temperature_offset(
-            known["rule"],
-            gas.thermostat,
-            gas.dimension,
-            gas.density,
-            mean_free_path,
+            known["rule"], gas.thermostat, gas.dimension, gas.density, mean_free_path
         )
 
     def bead_diffusion(
@@ -114,8 +106,8 @@ class CollisionRule(ABC):
 class Cell(NamedTuple):
     """What the particles of a cell add up to.
 
-    Their number, mass and momentum, `energy` the sum of m v^2, `sums` what a rule asked for: its
-    own sums, and after them the gradient of the one that `gradient_of` says, per cell of length.
+    Their number, mass and momentum, `energy` the sum of m v^2, `sums` those of the rule: its
+    own sums, and after them the gradient of the one with number `gradient_of`, per cell of length.
     """
 
     number: float

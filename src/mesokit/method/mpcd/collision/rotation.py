@@ -53,7 +53,7 @@ def angular_velocity(n, mass, q, angular_momentum):
 
     Two particles (or a line of them) have no inertia about their own axis, and no angular momentum
     either: the pseudo-inverse is then 2 / tr(I). Particles in one place do not rotate: what the
-    rounded sums say there is noise.
+    rounded sums give there is noise.
     """
     lx, ly, lz = angular_momentum
     a, b, c = q[1] + q[2], q[0] + q[2], q[0] + q[1]
@@ -69,16 +69,12 @@ def angular_velocity(n, mass, q, angular_momentum):
     x = inverse * (m00 * lx + m01 * ly + m02 * lz)
     y = inverse * (m01 * lx + m11 * ly + m12 * lz)
     z = inverse * (m02 * lx + m12 * ly + m22 * lz)
-    return (
-        x if regular else line * lx,
-        y if regular else line * ly,
-        z if regular else line * lz,
-    )
+    return (x if regular else line * lx, y if regular else line * ly, z if regular else line * lz)
 
 
 @scalar
 def spread_out(n, mass, q):
-    """Whether rounded sums can tell how these particles rotate, as the energy of it needs.
+    """True if rounded sums resolve how these particles rotate, as the energy of it needs.
 
     Not if all lie within some hundredths of a cell, or three and more almost on a line.
     """

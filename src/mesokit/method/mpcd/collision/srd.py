@@ -22,7 +22,7 @@ from mesokit.method.mpcd.collision.rotation import random_axis, rotate
 from mesokit.method.mpcd.thermostat.protocol import stretch
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.intrinsics import mul_add
-from mesokit.scalar.jit import optional
+from mesokit.scalar.jit import optional, scalar
 from mesokit.scalar.random import unit_open
 from mesokit.scalar.vector import added_scaled
 
@@ -49,21 +49,18 @@ class SRD(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 210.0, 3: 130.0}
 
     def kernel(self, dimension: int, kT: float) -> SRD2 | SRD2Uniform | SRD3:
-        """Parameters for the scalar functions below."""
         c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
         if dimension == 3:
             return SRD3(c, s)
         return SRD2(c, s) if self.angle_distribution == "fixed" else SRD2Uniform(c)
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
-        """None: the momentum is enough."""
         return ()
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
         return 4 if dimension == 2 else 6 + stretched
 
     def problems(self, dimension: int) -> Iterator[str]:
-        """Angles that the dimension does not allow."""
         if self.angle_distribution == "fixed":
             if self.angle == 180 and dimension == 2:
                 yield HALF_TURN
@@ -77,7 +74,6 @@ class SRD(CollisionRule):
             )
 
     def in_theory(self) -> dict[str, Any]:
-        """The name and angle by which `mesokit.theory` knows it."""
         fixed = self.angle_distribution == "fixed"
         return {"rule": "srd", "angle": self.angle if fixed else "uniform"}
 
@@ -89,7 +85,6 @@ class SRD(CollisionRule):
     def bead_diffusion(
         self, gas: Gas, mass: float, others: Sequence[tuple[float, float]] = ()
     ) -> float:
-        """Diffusion coefficient of a bead of this mass in the gas, among others."""
         # the cosine of an angle of 90 degrees is the mean of that of uniform ones
         angle = self.angle if self.angle_distribution == "fixed" else 90.0
         return theory.bead_diffusion(
@@ -117,39 +112,33 @@ class SRD3(NamedTuple):
     sin: float
 
 
-@contribute.register(SRD2, SRD2Uniform, SRD3)
-def _(rule, counter, key, m, v, r):
-    return v, ()
+contribute.register(SRD2, SRD2Uniform, SRD3)(lambda rule, counter, key, m, v, r: (v, ()))
 
 
-@freedom.register(SRD2, SRD2Uniform)
-def _(rule, n):
-    return 2.0 * (n - 1.0)
+freedom.register(SRD2, SRD2Uniform)(lambda rule, n: 2.0 * (n - 1.0))
+freedom.register(SRD3)(lambda rule, n: 3.0 * (n - 1.0))
 
 
-@freedom.register(SRD3)
-def _(rule, n):
-    return 3.0 * (n - 1.0)
+@scalar
+def turned_cell(rule, thermostat, variate, cell, cos, sin):
+    """Coefficients in 2D: mean velocity, and the rotation times the factor of a thermostat."""
+    momentum, share = cell.momentum, 1.0 / cell.mass
+    u = momentum[0] * share, momentum[1] * share
+    relative = cell.energy - cell.mass * (u[0] * u[0] + u[1] * u[1])
+    s = optional(stretch(thermostat, variate, freedom(rule, cell.number), 0.5 * relative), 1.0)
+    return u[0], u[1], s * cos, s * sin
 
 
 @coefficients.register(SRD2)
 def _(rule, thermostat, variate, chance, cell):
-    momentum, share = cell.momentum, 1.0 / cell.mass
-    u = momentum[0] * share, momentum[1] * share
     sign = 1.0 - 2.0 * float(np.int64(chance[0] & ONE))
-    relative = cell.energy - cell.mass * (u[0] * u[0] + u[1] * u[1])
-    s = optional(stretch(thermostat, variate, freedom(rule, cell.number), 0.5 * relative), 1.0)
-    return u[0], u[1], s * rule.cos, s * (sign * rule.sin)
+    return turned_cell(rule, thermostat, variate, cell, rule.cos, sign * rule.sin)
 
 
 @coefficients.register(SRD2Uniform)
 def _(rule, thermostat, variate, chance, cell):
-    momentum, share = cell.momentum, 1.0 / cell.mass
-    u = momentum[0] * share, momentum[1] * share
     sin, cos = sincos_turn(unit_open(chance[0]))
-    relative = cell.energy - cell.mass * (u[0] * u[0] + u[1] * u[1])
-    s = optional(stretch(thermostat, variate, freedom(rule, cell.number), 0.5 * relative), 1.0)
-    return u[0], u[1], s * cos, s * sin
+    return turned_cell(rule, thermostat, variate, cell, cos, sin)
 
 
 @coefficients.register(SRD3)
@@ -162,7 +151,8 @@ def _(rule, thermostat, variate, chance, cell):
 
 
 @collide.register(SRD2, SRD2Uniform)
-def _(rule, c, v, r):
+def turned_in_plane(rule, c, v, r):
+    """The mean velocity plus the relative one times a matrix of rotation and stretch."""
     wx, wy = v[0] - c[0], v[1] - c[1]
     x = mul_add(c[2], wx, mul_add(-c[3], wy, c[0]))
     return x, mul_add(c[3], wx, mul_add(c[2], wy, c[1]))
@@ -172,5 +162,4 @@ def _(rule, c, v, r):
 def _(rule, c, v, r):
     w = v[0] - c[0], v[1] - c[1], v[2] - c[2]
     w = rotate(w, (c[3], c[4], c[5]), rule.cos, rule.sin)
-    s = optional(c[6:], 1.0)
-    return added_scaled((c[0], c[1], c[2]), s, w)
+    return added_scaled((c[0], c[1], c[2]), optional(c[6:], 1.0), w)

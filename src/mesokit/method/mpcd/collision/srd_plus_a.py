@@ -53,7 +53,6 @@ class SRDPlusA(CollisionRule):
     rates: ClassVar[dict[int, float]] = {2: 120.0, 3: 40.0}
 
     def kernel(self, dimension: int, kT: float) -> SRDPlusA2 | SRDPlusA3:
-        """Parameters for the scalar functions below."""
         c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
         return SRDPlusA2(c, s) if dimension == 2 else SRDPlusA3(c, s)
 
@@ -67,12 +66,10 @@ class SRDPlusA(CollisionRule):
         return 5 if dimension == 2 else 12
 
     def problems(self, dimension: int) -> Iterator[str]:
-        """Angles that the dimension does not allow."""
         if self.angle == 180 and dimension == 2:
             yield HALF_TURN
 
     def in_theory(self) -> dict[str, Any]:
-        """The name and angle by which `mesokit.theory` knows it."""
         return {"rule": "srd+a", "angle": self.angle}
 
 
@@ -104,14 +101,8 @@ def _(rule, counter, key, m, v, r):
     return v, scaled(m, r) + scaled(m, second_moment(r)) + tensor
 
 
-@freedom.register(SRDPlusA2)
-def _(rule, n):
-    return 2.0 * (n - 1.0) - 1.0
-
-
-@freedom.register(SRDPlusA3)
-def _(rule, n):
-    return 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0)
+freedom.register(SRDPlusA2)(lambda rule, n: 2.0 * (n - 1.0) - 1.0)
+freedom.register(SRDPlusA3)(lambda rule, n: 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0))
 
 
 # Below, w are the rotated velocities relative to the mean, Omega their rigid rotation and omega

@@ -1,13 +1,12 @@
-"""How particles and molecules of a case move away from where they were."""
+"""Theory of the mean square displacement of particles and molecules."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
@@ -23,18 +22,14 @@ from mesokit.method.mpcd.expected.molecules import (
 )
 from mesokit.method.mpcd.expected.selection import group_of, kind_of
 from mesokit.method.mpcd.expected.traps import LEVEL, held, trapped
-from mesokit.method.mpcd.molecule import FLUID
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.molecule import FLUID, Molecule
 
 Array = NDArray[np.floating[Any]]
 Integers = NDArray[np.int64]
 
 
 class Displacement:
-    """What theory expects of the mean square displacement of those that an observable follows.
+    """Theory of the mean square displacement of the particles that an observable follows.
 
     Raises CaseError without an axis or a molecule to follow.
     """
@@ -44,7 +39,14 @@ class Displacement:
     def __init__(self, case: Case, observable: Any) -> None:
         self.case, self.of = case, observable.of
         self.species = observable.kind if case.fluid.species else None
-        self.axes = _axes(case, observable.components)
+        if observable.components is None:
+            self.axes = setting.quiet_axes(case)
+            if not self.axes:
+                raise CaseError("components: every axis has a flow or a wall; name those to follow")
+        else:
+            self.axes = tuple(case.box.index(axis, "components") for axis in observable.components)
+            if case.box.sheared and 0 in self.axes:
+                raise CaseError("components: not 'x' under shear, whose images slide")
         self.group = group_of(case, self.of, observable.kind)
         self.length, self.number = self.group.length, self.group.number
         self.molecule, self.kind = self.group.molecule, kind_of(case, self.group)
@@ -80,11 +82,8 @@ class Displacement:
             return free_diffusion(self.case)
         if not self.dissolved:
             return None
-        return (
-            free_diffusion(self.case, kind=self.kind)
-            if self.case.solutes.solvent == "random"
-            else None
-        )
+        random = self.case.solutes.solvent == "random"
+        return free_diffusion(self.case, kind=self.kind) if random else None
 
     def expected(self, steps: Integers) -> Array | None:
         """Molecular chaos, of molecules Rouse's; None without a theory."""
@@ -148,9 +147,8 @@ class Displacement:
         """Whether they fly freely: nothing to meet, to be bound to, or to fall by."""
         case = self.case
         bound = case.fluid.molecule is not None or self.dissolved
-        return not (case.fluid.collision.acts or case.fluid.mixed or case.walls or bound) and set(
-            self.axes
-        ) <= set(setting.quiet_axes(case))
+        meets = case.fluid.collision.acts or case.fluid.mixed or case.walls or bound
+        return not meets and set(self.axes) <= set(setting.quiet_axes(case))
 
     def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line.
@@ -166,8 +164,8 @@ class Displacement:
         alone = free_diffusion(self.case, self.of, self.kind)
         start = 5 * alone * self.mass / self.case.fluid.kT if alone else 0.0
         if self.dissolved:
-            around = self.slowest(self.case.fluid.molecule, FLUID)
-            start = max(start, self.spreading(), 5 * (around or 0.0))
+            around = self.slowest(self.case.fluid.molecule, FLUID) or 0.0
+            start = max(start, self.spreading(), 5 * around)
         if self.molecule is None:
             return start
         slowest = self.slowest(self.molecule, self.kind)
@@ -195,7 +193,7 @@ class Displacement:
         return float(times.mode[0])
 
     def coefficient(self) -> tuple[float, str]:
-        """The diffusion coefficient of theory, nan if there is none, and what to say of it."""
+        """The diffusion coefficient of theory, nan if there is none, and a note on it."""
         nothing, alone = float("nan"), self.alone()
         note = setting.chaos(self.case, setting.STIRRED)
         solutes, molecule = self.case.solutes, self.molecule
@@ -211,9 +209,7 @@ class Displacement:
             if solutes.solvent_pair is not None:
                 return dragged, "approximate: Enskog and Stokes with slip, less what images take"
             note = "Kirkwood, smeared over cells, less what images of the box take"
-            if (
-                molecule is not None
-            ):  # measured 1 to 9 % lower: docs/validation/polymer_diffusion.md
+            if molecule is not None:  # 1 to 9 % lower: docs/validation/polymer_diffusion.md
                 return dragged, f"approximate: {note}"
             if crowd_note(self.case, self.kind).startswith("approximate"):
                 return dragged, f"approximate: {note}; so many others also make the fluid thicker"
@@ -230,16 +226,3 @@ class Displacement:
         if friction is None:
             return nothing, note
         return self.case.fluid.kT / friction / molecule.length, rouse_note(self.case)
-
-
-def _axes(case: Case, components: tuple[str, ...] | None) -> tuple[int, ...]:
-    """The axes that count. Raises CaseError if there is none, or if images slide along one."""
-    if components is None:
-        axes = setting.quiet_axes(case)
-        if not axes:
-            raise CaseError("components: every axis has a flow or a wall; name those to follow")
-        return axes
-    axes = tuple(case.box.index(axis, "components") for axis in components)
-    if case.box.sheared and 0 in axes:
-        raise CaseError("components: not 'x' under shear, whose images slide")
-    return axes

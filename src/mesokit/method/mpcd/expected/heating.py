@@ -1,6 +1,5 @@
-"""What friction makes of the temperature of a fluid that no thermostat holds."""
+"""Temperature of a fluid without a thermostat under friction."""
 
-import contextlib
 import math
 from typing import Any, NamedTuple
 
@@ -50,43 +49,34 @@ def heating(case: Case, across: int) -> Heating | None:
 
     About solids that move, of a flow that falls to zero over the whole box: they heat it no less.
     """
-    known = _coefficients(case)
+    fluid, known = case.fluid, setting.transport(case) or setting.solvent(case)
+    if known is None and fluid.molecule is not None and fluid.collision.acts and not fluid.mixed:
+        known = setting.of_gas(case)  # bonds add to the friction
     if setting.isothermal(case) or known is None:
         return None
-    pipe, length = recognise.pipe(case), float(case.box.size[across])
-    if pipe is not None:
-        heat = _friction_in_pipe(case, pipe, known.viscosity)
+    pipe, length, nu = recognise.pipe(case), float(case.box.size[across]), known.viscosity
+    if pipe is not None:  # heat per volume and time: power of the force on the mean flow
+        acceleration = abs(float(setting.uniform_acceleration(case)[pipe.axis]))
+        rate = theory.hagen_poiseuille_flow_rate(pipe.radius, acceleration, nu)
+        heat = setting.mass_density(case) * acceleration * rate / (math.pi * pipe.radius**2)
     else:
-        heat = float(np.mean(_friction(case, across, known.viscosity)))
-    heat += setting.mass_density(case) * known.viscosity * _changing_shear(case)
-    moved = known.viscosity * (setting.surface_speed(case) / length) ** 2
-    fluid = case.fluid
+        y = np.linspace(0, length, POINTS)
+        flows = [setting.flow(case, i) for i in range(case.box.dimension)]
+        rates = [np.gradient(flow.profile(y), y) for flow in flows if flow.profile is not None]
+        squares = np.sum([rate**2 for rate in rates], axis=0) + np.zeros_like(y)
+        heat = float(np.mean(fluid.density * fluid.mass * nu * squares))
+    changing, history = 0.0, case.box.history  # mean square of the shear rate without a theory
+    if history is not None and not case.walls and setting.flow(case, 0).profile is None:
+        time = (case.run.warmup + case.run.steps) * float(fluid.timestep)
+        time = min(time, history.repeats_after or time)
+        shears = [history.rate_at((i + 0.5) * time / POINTS) for i in range(POINTS)]
+        changing = float(np.mean(np.square(shears)))
+    heat += setting.mass_density(case) * nu * changing
+    moved = nu * (setting.surface_speed(case) / length) ** 2
     mean = max(heat / fluid.density, fluid.mass * moved)
     rise = temperature_rise(case)
     steady = None if rise is None else float(np.mean(rise)) / fluid.kT
     return Heating(2 / case.box.dimension * mean / fluid.kT, steady)
-
-
-def _coefficients(case: Case) -> theory.Transport | None:
-    """Of the fluid; of one with solutes or bonds, which have more friction, those without them."""
-    known = setting.transport(case) or setting.solvent(case)
-    fluid = case.fluid
-    if known is None and fluid.molecule is not None and fluid.collision.acts and not fluid.mixed:
-        with contextlib.suppress(ValueError):
-            return fluid.collision.transport(setting.gas(case))
-    return known
-
-
-def _changing_shear(case: Case) -> float:
-    """Mean square of the shear rate of a box where it changes in time, or where a force acts too;
-    0 where the flow has a theory, and between walls, which hold it back."""
-    history = case.box.history
-    if history is None or case.walls or setting.flow(case, 0).profile is not None:
-        return 0.0
-    time = (case.run.warmup + case.run.steps) * float(case.fluid.timestep)
-    time = min(time, history.repeats_after or time)
-    rates = [history.rate_at((i + 0.5) * time / POINTS) for i in range(POINTS)]
-    return float(np.mean(np.square(rates)))
 
 
 def temperature_rise(case: Case) -> Array | None:
@@ -157,18 +147,11 @@ def _local(case: Case, kT: Array) -> _Local | None:
     return _Local(density, viscosity, conductivity, (float(jump[0]), float(jump[-1])))
 
 
-def _friction_in_pipe(case: Case, pipe: recognise.Pipe, viscosity: float) -> float:
-    """Mean heat per volume and time: what the force does to the mean flow of the pipe."""
-    acceleration = abs(float(setting.uniform_acceleration(case)[pipe.axis]))
-    rate = theory.hagen_poiseuille_flow_rate(pipe.radius, acceleration, viscosity)
-    return setting.mass_density(case) * acceleration * rate / (math.pi * pipe.radius**2)
-
-
 def _work(case: Case, across: int, sticky: list[bool], here: _Local) -> Array:
-    """What friction heats, per volume and time: stress squared over viscosity.
+    """Heat of friction per volume and time: stress squared over viscosity.
 
     The stress falls from plate to plate by the force on the fluid between; a slip plate takes
-    none, and of two that hold the fluid the velocities say how much each takes.
+    none, and of two that hold the fluid the velocities give how much each takes.
     """
     plates = slit_of(case)
     assert plates is not None
@@ -189,12 +172,3 @@ def _work(case: Case, across: int, sticky: list[bool], here: _Local) -> Array:
 def _running(values: Array, step: float) -> Array:
     """Integral from the lower plate to each height, by the trapezoidal rule."""
     return np.concatenate([[0.0], np.cumsum((values[1:] + values[:-1]) * step / 2)])
-
-
-def _friction(case: Case, across: int, viscosity: float) -> Array:
-    """What friction heats, per volume and time, at evenly spaced heights."""
-    y = np.linspace(0, float(case.box.size[across]), POINTS)
-    flows = [setting.flow(case, i) for i in range(case.box.dimension)]
-    rates = [np.gradient(flow.profile(y), y) for flow in flows if flow.profile is not None]
-    dynamic = case.fluid.density * case.fluid.mass * viscosity
-    return dynamic * np.sum([rate**2 for rate in rates], axis=0) + np.zeros_like(y)

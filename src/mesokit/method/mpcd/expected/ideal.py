@@ -1,15 +1,14 @@
-"""What ideal molecules are at rest, and how beads drift and spread where nothing is in the way."""
-
-from __future__ import annotations
+"""Theory of ideal molecules at rest, and of beads that drift and spread freely."""
 
 import dataclasses
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     ends_at_rest,
@@ -22,11 +21,8 @@ from mesokit.method.mpcd.expected.molecules import (
 )
 from mesokit.method.mpcd.expected.selection import Group, of_fluid
 from mesokit.method.mpcd.expected.traps import at_rest, pulls_on, trapped
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.potential.thermal import mean_square
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
 
 
 def undisturbed(case: Case) -> bool:
@@ -83,7 +79,7 @@ def stretched(case: Case, molecule: Molecule) -> float:
 
 
 class Drift(NamedTuple):
-    """Velocity (d,) and diffusion coefficient of centres of mass, and what to say of them.
+    """Velocity (d,) and diffusion coefficient of centres of mass, and a note on them.
 
     A velocity is remembered for the time `memory`, beyond that of one flight.
     """
@@ -120,8 +116,7 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
 
 def flow_axis(case: Case) -> int:
     """Number of the axis along which a force drives the fluid, x unless there is one."""
-    axis = setting.driven_axis(case)
-    return 0 if axis is None else axis
+    return setting.driven_axis(case) or 0
 
 
 def flow_sign(case: Case, axis: int) -> int:

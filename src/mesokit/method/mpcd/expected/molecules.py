@@ -1,15 +1,14 @@
-"""What theory expects of molecules: modes of their springs, relaxation, diffusion and shear."""
-
-from __future__ import annotations
+"""Theory of molecules: modes of their springs, relaxation and diffusion."""
 
 import dataclasses
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.selection import (
@@ -18,12 +17,7 @@ from mesokit.method.mpcd.expected.selection import (
     molecule_of,
     of_fluid,
 )
-from mesokit.method.mpcd.molecule import FLUID
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
-
+from mesokit.method.mpcd.molecule import FLUID, Molecule
 
 Array = NDArray[np.floating[Any]]
 FAST = 0.5  # radians of a bond in one flight: from here on Rouse's times are off by a tenth
@@ -44,8 +38,8 @@ def modes_of(molecule: Molecule) -> theory.NormalModes:
 def springs_of(case: Case, kind: int | str = 1) -> theory.Spring | None:
     """The springs of molecules; None where beads feel anything else, of other kinds too."""
     solutes = case.solutes
-    beads = solutes is not None and not of_fluid(case, kind)
-    if beads and solutes is not None and not solutes.ideal(solutes.index_of(kind)):
+    dissolved = solutes is not None and not of_fluid(case, kind)
+    if dissolved and solutes is not None and not solutes.ideal(solutes.index_of(kind)):
         return None
     return spring_of(molecule_of(case, kind=kind))
 
@@ -58,7 +52,7 @@ def spring_of(molecule: Molecule) -> theory.Spring | None:
 
 
 def modes_at_rest(case: Case, kind: int | str = 1) -> theory.NormalModes:
-    """Normal modes whose eigenvalues say how far springs swing at rest, as sub-steps move them.
+    """Normal modes whose eigenvalues give the swing of springs at rest, as sub-steps move them.
 
     Velocity Verlet makes each spring mode a little softer, see `theory.verlet_swing`.
     """
@@ -87,32 +81,24 @@ def ends_at_rest(case: Case, kind: int | str, bond: float) -> float:
 
 def swing_of_flight(case: Case) -> float:
     """By how much the fastest bond of the fluid's molecules turns in one flight, in radians."""
-    fluid = case.fluid
-    return (
-        molecule_of(case, kind=FLUID).frequency(case.box.dimension, fluid.kT, fluid.mass)
-        * fluid.timestep
-    )
+    fluid, molecule = case.fluid, molecule_of(case, kind=FLUID)
+    return molecule.frequency(case.box.dimension, fluid.kT, fluid.mass) * fluid.timestep
 
 
 def without_bonds(case: Case) -> theory.Transport | None:
     """Transport coefficients of the same fluid of single particles; None if it has solutes."""
-    if case.solutes is not None:
-        return None
-    fluid = dataclasses.replace(case.fluid, molecule=None)
-    return setting.transport(
-        dataclasses.replace(case, fluid=fluid, observe=(), trajectory=None, log=None)
-    )
+    return without_solutes(case) if case.solutes is None else None
 
 
 def without_solutes(case: Case) -> theory.Transport | None:
-    """The same without solutes too."""
-    return without_bonds(
-        dataclasses.replace(case, solutes=None, observe=(), trajectory=None, log=None)
-    )
+    """Transport coefficients of the same fluid of single particles, without solutes."""
+    fluid = dataclasses.replace(case.fluid, molecule=None)
+    bare: dict[str, Any] = {"solutes": None, "observe": (), "trajectory": None, "log": None}
+    return setting.transport(dataclasses.replace(case, fluid=fluid, **bare))
 
 
 def solvent_of(case: Case) -> theory.Transport | None:
-    """Transport coefficients of what the solutes are in; None of molecules."""
+    """Transport coefficients of the solvent of solutes; None if it has molecules."""
     return without_solutes(case) if case.fluid.molecule is None else None
 
 
@@ -129,9 +115,9 @@ def longest_relaxation(case: Case) -> tuple[float, str] | None:
     """The time of the slowest normal mode of all molecules, and the theory; None without one."""
     known = [(mode_times_of(case, kind)[0], kind) for kind in kinds_of_molecules(case)]
     times = [(float(one.mode[0]), kind) for one, kind in known if one is not None]
-    if not times:
+    time, kind = max(times, key=lambda one: one[0], default=(None, None))
+    if time is None:
         return None
-    time, kind = max(times, key=lambda one: one[0])
     alone = kind == FLUID or case.solutes is None or case.solutes.solvent == "random"
     return time, "Rouse" if alone else "Zimm"
 
@@ -156,7 +142,7 @@ def stirring_diffusion(case: Case, boxed: bool = False) -> float | None:
 
 def self_diffusion(case: Case) -> tuple[float, str]:
     """Diffusion coefficient of a particle of a simple fluid in this box, nan without a theory, and
-    what to say of it: with the flow that it stirs up, or between walls molecular chaos."""
+    a note: with the flow that it stirs up, or between walls molecular chaos."""
     quiet = not case.walls and setting.mean_free_path(case) < 1
     stirring = stirring_diffusion(case, boxed=True) if quiet else None
     if stirring is not None:
@@ -177,7 +163,7 @@ def substep_of(case: Case, kind: int | str = 1) -> tuple[float, float]:
 
 
 def rouse_note(case: Case) -> str:
-    """How good Rouse's theory is where beads are said to have the friction of free particles."""
+    """Note on Rouse's theory where beads are taken to have the friction of free particles."""
     if case.solutes is not None and case.fluid.molecule is not None:
         return setting.caveat(case)
     if case.solutes is None and (turns := swing_of_flight(case)) > FAST:
@@ -236,7 +222,7 @@ def others_of(case: Case, place: int) -> list[tuple[float, float]]:
 
 
 def crowd_note(case: Case, kind: int | str) -> str:
-    """What to say of the diffusion coefficient of beads alone that share cells with others."""
+    """Note on the diffusion coefficient of beads alone that share cells with others."""
     assert case.solutes is not None
     place = case.solutes.index_of(kind)
     if not case.solutes.ideal(place):
@@ -256,20 +242,8 @@ def hits_of(case: Case, kind: int | str | None = None) -> float:
     return theory.enskog_friction(*size, case.box.dimension, fluid.kT, fluid.mass)
 
 
-def colloid_diffusion(case: Case, kind: int | str) -> float | None:
-    """Diffusion coefficient of a bead that acts on the fluid by a potential, in this cubic box."""
-    solvent, solutes, size = solvent_of(case), case.solutes, case.box.size
-    if solvent is None or solutes is None or case.box.dimension == 2 or case.walls:
-        return None
-    if len(set(size)) > 1 or case.fluid.species:
-        return None
-    eta, kT = solvent.viscosity * case.fluid.density * case.fluid.mass, case.fluid.kT
-    return theory.slip_sphere_diffusion(solutes.radius(kT), eta, hits_of(case, kind), size[0], kT)
-
-
 class Solution(NamedTuple):
-    """Ideal chains in a fluid at rest, as theory takes them: the first arguments of Kirkwood's and
-    Zimm's."""
+    """Ideal chains or single beads in a fluid at rest, for Kirkwood's and Zimm's theories."""
 
     beads: int
     friction: float
@@ -279,49 +253,48 @@ class Solution(NamedTuple):
 
 
 def solution_of(case: Case, kind: int | str) -> Solution | None:
-    """Chains of a kind that drag the fluid along, in 3D without walls; None for others."""
+    """Chains or monomers of a kind that drag the fluid along, in 3D without walls; None for
+    others."""
     assert case.solutes is not None
-    molecule = case.solutes.molecule(case.solutes.index_of(kind))
-    bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case, kind=kind)
-    solvent = solvent_of(case)
-    if case.solutes.solvent_pair is not None:
+    place = case.solutes.index_of(kind)
+    molecule, kT = case.solutes.molecule(place), case.fluid.kT
+    alone, solvent = free_diffusion(case, kind=kind), solvent_of(case)
+    if molecule is None:
+        bond = 1.0 if case.solutes.ideal(place) else None
+    else:
+        bond = free_bond(case, kind) if molecule.topology == "chain" else None
+    if case.solutes.solvent_pair is not None or case.box.dimension == 2 or case.walls:
         return None
-    if molecule is None or bond is None or alone is None or solvent is None:
-        return None
-    if molecule.topology != "chain" or case.box.dimension == 2 or case.walls:
+    if bond is None or alone is None or solvent is None:
         return None
     eta = solvent.viscosity * case.fluid.density * case.fluid.mass
-    return Solution(molecule.length, case.fluid.kT / alone, eta, math.sqrt(bond), case.fluid.kT)
+    return Solution(molecule.length if molecule else 1, kT / alone, eta, math.sqrt(bond), kT)
 
 
 def kirkwood(case: Case, kind: int | str) -> float | None:
     """Diffusion coefficient of monomers and ideal chains that drag the fluid along, in this cubic
     box; None for other molecules and boxes."""
-    assert case.solutes is not None
-    if case.solutes.solvent_pair is not None:
-        whole = case.solutes.molecule(case.solutes.index_of(kind)) is not None
-        return None if whole else colloid_diffusion(case, kind)
-    size, solution = case.box.size, solution_of(case, kind)
-    place = case.solutes.index_of(kind)
-    if case.solutes.molecule(place) is None and case.solutes.ideal(place):
-        solution = monomers_of(case, kind)
-    if solution is None or len(set(size)) > 1:
+    solutes, size, kT = case.solutes, case.box.size, case.fluid.kT
+    assert solutes is not None
+    if len(set(size)) > 1:
+        return None
+    if solutes.solvent_pair is not None:
+        solvent, single = solvent_of(case), solutes.molecule(solutes.index_of(kind)) is None
+        flat = case.box.dimension == 2 or case.walls or case.fluid.species
+        if solvent is None or flat or not single:
+            return None
+        eta = solvent.viscosity * case.fluid.density * case.fluid.mass
+        friction = hits_of(case, kind)
+        return theory.slip_sphere_diffusion(solutes.radius(kT), eta, friction, size[0], kT)
+    solution = solution_of(case, kind)
+    if solution is None:
         return None
     free = theory.kirkwood_in_cells(*solution)
     return theory.diffusion_in_box(free, size[0], solution.viscosity, solution.kT)
 
 
-def monomers_of(case: Case, kind: int | str) -> Solution | None:
-    """Beads alone that drag the fluid along, in 3D without walls."""
-    alone, solvent = free_diffusion(case, kind=kind), solvent_of(case)
-    if alone is None or solvent is None or case.box.dimension == 2 or case.walls:
-        return None
-    eta = solvent.viscosity * case.fluid.density * case.fluid.mass
-    return Solution(1, case.fluid.kT / alone, eta, 1.0, case.fluid.kT)
-
-
 def mode_times_of(case: Case, kind: int | str = 1) -> tuple[theory.RouseTimes | None, str]:
-    """Relaxation times of molecules at rest, and whose theory says so: Rouse or Zimm."""
+    """Relaxation times of molecules at rest, and a note with the theory, Rouse or Zimm."""
     if case.solutes is None or case.solutes.solvent == "random" or of_fluid(case, kind):
         return rouse_times_of(case, kind), rouse_note(case)
     note = "approximate: Zimm; hydrodynamics pre-averaged, large box"
@@ -354,90 +327,6 @@ def springs_in(case: Case) -> list[tuple[int, theory.RouseTimes]]:
     kinds = kinds_of_molecules(case)
     known = [(group_of(case, "beads", kind).number, least_times_of(case, kind)) for kind in kinds]
     return [(number, times) for number, times in known if times is not None]
-
-
-FEW = 3  # beads of a molecule up to which the others do not screen what it drags along
-
-
-def few_in_shear(case: Case) -> theory.ChainInShear | None:
-    """Dimers and trimers in steady shear (3D), with hydrodynamic interaction; None for others.
-
-    The particles of longer molecules are mostly beads of others, beside which their own drag one
-    another along less than Zimm has it: Rouse's times are nearer (docs/validation/viscoelastic.md).
-    """
-    if case.solutes is not None:
-        return None
-    c, friction, molecule = without_bonds(case), friction_of(case), molecule_of(case)
-    spring = spring_of(molecule)
-    if c is None or friction is None or spring is None or case.box.dimension == 2:
-        return None
-    if molecule.topology != "chain" or molecule.length > FEW:
-        return None
-    eta, rate = c.viscosity * setting.mass_density(case), case.box.steady_rate
-    try:
-        return theory.zimm_shear(molecule.length, rate, spring.K, friction, eta, case.fluid.kT)
-    except ValueError:  # bonds shorter than beads are large
-        return None
-
-
-def shear_note(case: Case) -> str:
-    """How good the theory of molecules in shear is."""
-    if few_in_shear(case) is None:
-        return rouse_note(case)
-    return "approximate: one molecule in a simple fluid, hydrodynamics averaged over its bonds"
-
-
-def times_in_shear(case: Case) -> theory.RouseTimes | None:
-    """Relaxation times of the molecules of a sheared fluid; None beside solutes."""
-    if case.solutes is not None:
-        return None
-    few = few_in_shear(case)
-    return rouse_times_of(case) if few is None else few.times
-
-
-def stress_in_shear(case: Case) -> theory.ShearStress | None:
-    """Viscosity (dynamic) and normal-stress differences of molecules of springs in steady shear."""
-    c, times = without_bonds(case), times_in_shear(case)
-    if c is None or times is None:
-        return None
-    fluid = case.fluid
-    modulus = fluid.density / molecule_of(case).length * fluid.kT
-    eta = c.viscosity * setting.mass_density(case)
-    return theory.maxwell_shear(case.box.steady_rate, modulus, times.stress, eta)
-
-
-def bond_viscosity(case: Case) -> float | None:
-    """What bonds add to the viscosity (dynamic) of slow flow; None without a theory.
-
-    Of springs without a length of their own it is that of any flow.
-    """
-    c = without_bonds(case)
-    if c is None:
-        return None
-    molecule, times = molecule_of(case), times_in_shear(case)
-    molecules = case.fluid.density / molecule.length
-    if times is not None:
-        return molecules * case.fluid.kT * float(times.stress.sum())
-    d, kT = case.box.dimension, case.fluid.kT
-    square = molecule.mean_square_bond(d, kT) if molecule.length == 2 else None
-    friction = friction_of(case)
-    if square is None or friction is None:
-        return None
-    return theory.dumbbell_viscosity(molecules, friction, square / d)
-
-
-def bonds_in_shear(case: Case) -> Array | None:
-    """Mean products (d, d) of the components of bonds in steady shear: Rouse, or with hydrodynamic
-    interaction."""
-    times, bond = times_in_shear(case), free_bond(case)
-    if times is None or bond is None:
-        return None
-    d, number = case.box.dimension, len(molecule_of(case).bonds)
-    found = theory.bond_correlation(0.0, times.stress, bond, case.box.steady_rate, d, number)
-    products = float(found.yy) * np.eye(d)
-    products[0, 0] = float(found.xx)
-    products[0, 1] = products[1, 0] = float(found.xy)
-    return products
 
 
 def free_bond(case: Case, kind: int | str = 1) -> float | None:

@@ -1,4 +1,4 @@
-"""What theory says of the neighbours of particles, beads and molecules."""
+"""Theory of the neighbours of particles, beads and molecules."""
 
 import math
 from typing import Any
@@ -25,18 +25,14 @@ class NeighboursInFluid:
 
     def __init__(self, case: Case, observable: Any) -> None:
         self.case, self.of = case, default_of(case, observable.of)
-        self.first, self.second = self._chosen(observable.kinds)
-
-    def _chosen(self, kinds: tuple[int | str, ...]) -> tuple[list[Group], list[Group]]:
-        """Groups of the first kind and of the second, which is empty for pairs within the first."""
-        if not kinds:
-            return groups_of(self.case, self.of), []
-        try:
-            first, *others = (groups_of(self.case, self.of, kind) for kind in kinds)
-        except CaseError as error:  # which speaks of one kind
-            known = str(error).partition(": ")[2]
-            raise CaseError(f"kinds = {show(kinds)}: {known}") from None
-        return first, others[0] if others else []
+        try:  # the second is empty for pairs within the first
+            groups = [groups_of(case, self.of, kind) for kind in observable.kinds or (None,)]
+        except CaseError as error:
+            if not observable.kinds:
+                raise
+            known = str(error).partition(": ")[2]  # of the message about one kind
+            raise CaseError(f"kinds = {show(observable.kinds)}: {known}") from None
+        self.first, self.second = groups[0], groups[1] if len(groups) > 1 else []
 
     def sampled(self, group: Group) -> bool:
         """True of a group in the fluid, which has many particles."""

@@ -107,28 +107,20 @@ def gap(case: Case) -> Gap | None:
     walls: Any = case.walls
     first, second = walls
     axis = _axis(first)
-    if axis is None or axis != _axis(second) or {first.fluid, second.fluid} != SIDES:
+    if axis is None or axis != _axis(second) or first.fluid == second.fluid:
         return None
     inner, outer = (0, 1) if first.fluid == "outside" else (1, 0)
-    if not all(wall.surface.rule == "no-slip" and not any(wall.surface.velocity or ())
-               for wall in walls):  # fmt: skip
+    surfaces = [wall.surface for wall in walls]
+    if not all(one.rule == "no-slip" and not any(one.velocity or ()) for one in surfaces):
         return None
-    off = [a - b for k, (a, b) in enumerate(zip(first.centre, second.centre, strict=True))
-           if k != axis]  # fmt: skip
+    centres = enumerate(zip(first.centre, second.centre, strict=True))
+    off = [a - b for k, (a, b) in centres if k != axis]
     rates = [body.rotation for body in solids_of(case).bodies]
     crooked = any(rate[k] for rate in rates for k in range(3) if k != axis)
     if any(off) or crooked or walls[inner].radius >= walls[outer].radius:
         return None
-    return Gap(
-        axis,
-        first.centre,
-        walls[inner].radius,
-        walls[outer].radius,
-        rates[inner][axis],
-        rates[outer][axis],
-        inner,
-        outer,
-    )
+    radii, turning = (walls[inner].radius, walls[outer].radius), [rate[axis] for rate in rates]
+    return Gap(axis, first.centre, *radii, turning[inner], turning[outer], inner, outer)
 
 
 def lattice(case: Case) -> Lattice | None:
@@ -170,9 +162,6 @@ def in_channel(case: Case) -> str | None:
     if not square or not middle or abs(8 * sides[0] / height - 1) > 0.03:
         return None
     return "disk" if isinstance(body, Disk) else "square"
-
-
-SIDES = {"inside", "outside"}
 
 
 def _axis(wall: Any) -> int | None:

@@ -1,4 +1,4 @@
-"""What theory expects of a fluid whose shear changes in time."""
+"""Theory of molecules and fluids in shear, steady or changing in time."""
 
 import math
 
@@ -7,10 +7,98 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import times_in_shear, without_bonds
+from mesokit.method.mpcd.expected.molecules import (
+    Array,
+    free_bond,
+    friction_of,
+    rouse_note,
+    rouse_times_of,
+    spring_of,
+    without_bonds,
+)
 from mesokit.method.mpcd.expected.selection import molecule_of
 
+FEW = 3  # beads of a molecule up to which the others do not screen what it drags along
 FORGOTTEN = 15.0  # relaxation times
+
+
+def few_in_shear(case: Case) -> theory.ChainInShear | None:
+    """Dimers and trimers in steady shear (3D), with hydrodynamic interaction; None for others.
+
+    The particles of longer molecules are mostly beads of others, beside which their own drag one
+    another along less than Zimm has it: Rouse's times are nearer (docs/validation/viscoelastic.md).
+    """
+    if case.solutes is not None:
+        return None
+    c, friction, molecule = without_bonds(case), friction_of(case), molecule_of(case)
+    spring = spring_of(molecule)
+    if c is None or friction is None or spring is None or case.box.dimension == 2:
+        return None
+    if molecule.topology != "chain" or molecule.length > FEW:
+        return None
+    eta, rate = c.viscosity * setting.mass_density(case), case.box.steady_rate
+    try:
+        return theory.zimm_shear(molecule.length, rate, spring.K, friction, eta, case.fluid.kT)
+    except ValueError:  # bonds shorter than beads are large
+        return None
+
+
+def shear_note(case: Case) -> str:
+    """Note on the theory of molecules in shear."""
+    if few_in_shear(case) is None:
+        return rouse_note(case)
+    return "approximate: one molecule in a simple fluid, hydrodynamics averaged over its bonds"
+
+
+def times_in_shear(case: Case) -> theory.RouseTimes | None:
+    """Relaxation times of the molecules of a sheared fluid; None beside solutes."""
+    if case.solutes is not None:
+        return None
+    few = few_in_shear(case)
+    return rouse_times_of(case) if few is None else few.times
+
+
+def stress_in_shear(case: Case) -> theory.ShearStress | None:
+    """Viscosity (dynamic) and normal-stress differences of molecules of springs in steady shear."""
+    c, times = without_bonds(case), times_in_shear(case)
+    if c is None or times is None:
+        return None
+    eta = c.viscosity * setting.mass_density(case)
+    return theory.maxwell_shear(case.box.steady_rate, modulus_of(case), times.stress, eta)
+
+
+def bond_viscosity(case: Case) -> float | None:
+    """What bonds add to the viscosity (dynamic) of slow flow; None without a theory.
+
+    Of springs without a length of their own it is that of any flow.
+    """
+    c = without_bonds(case)
+    if c is None:
+        return None
+    molecule, times = molecule_of(case), times_in_shear(case)
+    molecules = case.fluid.density / molecule.length
+    if times is not None:
+        return molecules * case.fluid.kT * float(times.stress.sum())
+    d, kT = case.box.dimension, case.fluid.kT
+    square = molecule.mean_square_bond(d, kT) if molecule.length == 2 else None
+    friction = friction_of(case)
+    if square is None or friction is None:
+        return None
+    return theory.dumbbell_viscosity(molecules, friction, square / d)
+
+
+def bonds_in_shear(case: Case) -> Array | None:
+    """Mean products (d, d) of the components of bonds in steady shear: Rouse, or with hydrodynamic
+    interaction."""
+    times, bond = times_in_shear(case), free_bond(case)
+    if times is None or bond is None:
+        return None
+    d, number, rate = case.box.dimension, len(molecule_of(case).bonds), case.box.steady_rate
+    found = theory.bond_correlation(0.0, times.stress, bond, rate, d, number)
+    products = float(found.yy) * np.eye(d)
+    products[0, 0] = float(found.xx)
+    products[0, 1] = products[1, 0] = float(found.xy)
+    return products
 
 
 def modulus_of(case: Case) -> float:

@@ -1,21 +1,16 @@
 """Particles, beads or molecules of an observable, and whether they are independent of others."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.molecule import FLUID
+from mesokit.method.mpcd.molecule import FLUID, Molecule
 from mesokit.statistics import spread_ids
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
 
 KIND = (
     "which molecules: name or number, from 1, of solutes.polymers; 'fluid': those of the fluid, "
@@ -70,7 +65,11 @@ def group_of(case: Case, of: str, kind: int | str | None = 1) -> Group:
     molecule, solutes = case.fluid.molecule, case.solutes
     if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
         if case.fluid.species and kind is not None:
-            return _species(case, kind)
+            kinds = case.groups[0].kinds
+            if not isinstance(kind, int) or not 1 <= kind <= len(kinds):
+                raise CaseError(f"kind = {show(kind)}: expected 1 to {len(kinds)} (fluid.species)")
+            before = sum(one.number for one in kinds[: kind - 1])
+            return Group(before, 1, kinds[kind - 1].number, None)
         if kind not in (None, 1, FLUID):
             raise CaseError(
                 f"kind = {show(kind)}: only with of = 'beads', 'centres' or 'ends', or with "
@@ -99,14 +98,6 @@ def kind_of(case: Case, group: Group) -> int | str:
     kinds = range(len(case.solutes.polymers))
     starts = [case.particles + case.solutes.first_bead(kind) for kind in kinds]
     return 1 + starts.index(group.first)
-
-
-def _species(case: Case, kind: int | str) -> Group:
-    """Particles of one species."""
-    kinds = case.groups[0].kinds
-    if not isinstance(kind, int) or not 1 <= kind <= len(kinds):
-        raise CaseError(f"kind = {show(kind)}: expected 1 to {len(kinds)} (fluid.species)")
-    return Group(sum(one.number for one in kinds[: kind - 1]), 1, kinds[kind - 1].number, None)
 
 
 def beads_of(case: Case, wanted: int | None = None, kind: int | str = 1) -> NDArray[np.int64]:

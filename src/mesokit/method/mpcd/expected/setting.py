@@ -1,38 +1,37 @@
-"""What theory needs to know of a case: coefficients, the state at rest, and the steady flow."""
-
-from __future__ import annotations
+"""Properties of a case for theory: coefficients, the state at rest, and the steady flow."""
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
+from mesokit.case.case import Case
 from mesokit.case.component import name_of
 from mesokit.geometry import shape_protocol as walls
+from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
 from mesokit.method.mpcd.collision import Gas
 
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.geometry.shape.plates import Plates
-
 Array = NDArray[np.floating[Any]]
-# third-order Gauss points: exact bin averages of the parabolas that flows are made of
 THIN = 1.0  # particles per cell: of fewer, viscosities were seen to be 14 % off and more
 RAREFIED = 0.03  # mean free path over the distance of plates, above which slip is seen
+# third-order Gauss points: exact bin averages of the parabolas that flows are made of
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
 def transport(case: Case) -> theory.Transport | None:
-    """Transport coefficients of the fluid; None where `caveat` says why there is no theory."""
-    if caveat(case):
-        return None
+    """Transport coefficients of the fluid; None without a theory, for which see `caveat`."""
+    return None if caveat(case) else of_gas(case)
+
+
+def of_gas(case: Case) -> theory.Transport | None:
+    """Transport coefficients as if its particles were single; None for a half turn in 2D."""
     try:
         return case.fluid.collision.transport(gas(case))
-    except ValueError:  # such as a half turn in 2D
+    except ValueError:
         return None
 
 
@@ -41,27 +40,17 @@ def solvent(case: Case) -> theory.Transport | None:
     fluid = case.fluid
     if case.solutes is None or fluid.mixed or fluid.molecule is not None or fluid.grid_shift < 1:
         return None
-    try:
-        return fluid.collision.transport(gas(case)) if fluid.collision.acts else None
-    except ValueError:
-        return None
+    return of_gas(case) if fluid.collision.acts else None
 
 
 def gas(case: Case) -> Gas:
-    """What the theory of a fluid is a function of."""
-    fluid = case.fluid
-    return Gas(
-        case.box.dimension,
-        fluid.density,
-        fluid.timestep,
-        fluid.kT,
-        fluid.mass,
-        fluid.thermostat.in_theory,
-    )
+    """The fluid of a case, as theory takes it."""
+    f = case.fluid
+    return Gas(case.box.dimension, f.density, f.timestep, f.kT, f.mass, f.thermostat.in_theory)
 
 
 def caveat(case: Case) -> str:
-    """Why there is no theory of the transport coefficients, "" where there is."""
+    """Reason for which there is no theory of the transport coefficients; "" if there is one."""
     if not case.fluid.collision.acts:
         return "there are none without collisions"
     if case.fluid.mixed:
@@ -86,13 +75,10 @@ STIRRING = "molecular chaos and hydrodynamic backflow, in this box"
 
 
 def chaos(case: Case, off: str) -> str:
-    """The note of a number that molecular chaos gives: `off` says how far off where particles
+    """The note of a number that molecular chaos gives: `off` is its error where particles
     meet again before they have flown a cell."""
-    if caveat(case):
-        return caveat(case)
-    if mean_free_path(case) < 1:
-        return f"approximate: molecular chaos; {off}"
-    return "molecular chaos"
+    approximate = mean_free_path(case) < 1
+    return caveat(case) or f"approximate: molecular chaos; {off}" * approximate or "molecular chaos"
 
 
 def loop(case: Case) -> float:
@@ -147,15 +133,12 @@ def offset(case: Case) -> float:
 
 
 def temperature_note(case: Case) -> str:
-    """How far a thermostat is known to miss kT, "" below 0.1 %."""
+    """Note on the known deviation of a thermostat from kT, "" below 0.1 %."""
     if case.fluid.mixed:
-        for part in (case.fluid.thermostat, case.fluid.collision):
-            if not part.one_temperature:
-                return (
-                    f"approximate: {name_of(part)} holds the kinds of a mixture at different "
-                    "temperatures"
-                )
-        return ""
+        parts = (case.fluid.thermostat, case.fluid.collision)
+        name = next((name_of(part) for part in parts if not part.one_temperature), "")
+        kinds = f"approximate: {name} holds the kinds of a mixture at different temperatures"
+        return kinds if name else ""
     percent = 100 * offset(case)
     if abs(percent) <= 0.1:
         return ""
@@ -165,8 +148,8 @@ def temperature_note(case: Case) -> str:
 
 def mass_density(case: Case) -> float:
     """Mass per cell, of solutes too."""
-    fluid = case.fluid.density * case.fluid.mass
-    return fluid if case.solutes is None else fluid + solute_mass(case) / free_volume(case)
+    fluid, solutes = case.fluid.density * case.fluid.mass, case.solutes
+    return fluid if solutes is None else fluid + solutes.total_mass / free_volume(case)
 
 
 def carriers(case: Case) -> tuple[float, float]:
@@ -185,34 +168,15 @@ def carriers(case: Case) -> tuple[float, float]:
     return density + solutes.beads / volume, alone + wholes
 
 
-def solute_mass(case: Case) -> float:
-    """Mass of all beads of solutes, on which forces on the fluid act as well."""
-    return case.solutes.total_mass if case.solutes is not None else 0.0
-
-
 def superficial_mass(case: Case) -> float:
-    """What the momentum of fluid and solutes is divided by for their superficial velocity."""
+    """Mass by which momentum of fluid and solutes is divided for their superficial velocity."""
     return mass_density(case) * case.box.volume
-
-
-def slip_length(case: Case) -> float | None:
-    """At plates whose virtual particles go on with the flow, in cells; None without a theory."""
-    plates, known = slit_of(case), case.fluid.collision.in_theory()
-    if plates is None or plates.slips or plates.virtual != "extrapolate" or known is None:
-        return None
-    given = gas(case)
-    if caveat(case) or given.thermostat is None:
-        return None
-    try:
-        return theory.virtual_gas_slip(**known, **given._asdict())
-    except ValueError:  # rules that conserve angular momentum
-        return None
 
 
 def sound_speed(case: Case) -> float:
     """That of theory, or of an ideal gas at kT: fast sound does not feel soft bonds."""
-    known = transport(case)
-    return known.sound_speed if known else float((case.fluid.kT / case.fluid.mass) ** 0.5)
+    known, fluid = transport(case), case.fluid
+    return known.sound_speed if known else float((fluid.kT / fluid.mass) ** 0.5)
 
 
 def isothermal(case: Case) -> bool:
@@ -222,27 +186,22 @@ def isothermal(case: Case) -> bool:
 
 
 def at_kT(case: Case) -> bool:
-    """Whether the fluid is at kT everywhere: nothing heats it, or a thermostat sees enough pairs
-    to take the heat."""
+    """True if the fluid is at kT everywhere: nothing heats it, or a thermostat has enough pairs to
+    take the heat."""
     return not driven(case) or (isothermal(case) and case.fluid.density >= THIN)
 
 
 def slipping(case: Case) -> str:
     """Why walls are known not to hold the fluid next to them, "" where they do."""
-    thin = case.fluid.density < THIN
-    if thin:
-        return "approximate: particles of so thin a fluid fly from wall to wall"
-    return rarefied(case)
+    thin = "approximate: particles of so thin a fluid fly from wall to wall"
+    return thin if case.fluid.density < THIN else rarefied(case)
 
 
 def rarefied(case: Case) -> str:
     """That flights between plates are not short beside their distance, so that the fluid slips: by
     5 to 8 % of a flow rate where they are a tenth of it (measured in 3D)."""
     wall = slit_of(case)
-    if wall is None:
-        return ""
-    apart = float(case.box.size[case.box.index(wall.axis)])
-    part = mean_free_path(case) / apart
+    part = mean_free_path(case) / float(case.box.size[case.box.index(wall.axis)]) if wall else 0.0
     return f"approximate: slip, flights of {part:.2g} of the channel" if part > RAREFIED else ""
 
 
@@ -278,7 +237,7 @@ def with_start(case: Case, error: float, expected: float, runs: int = 1) -> floa
 
 
 def driven(case: Case) -> bool:
-    """Whether anything makes the fluid flow, or hands it momentum."""
+    """True if anything makes the fluid flow, or gives it momentum."""
     return flowing(case) or magnetic(case)
 
 
@@ -302,11 +261,6 @@ def closed_axes(case: Case) -> set[int]:
     return {AXES.index(axis) for axis in walls.closed_axes(case.walls)}
 
 
-def aperiodic_axes(case: Case) -> set[int]:
-    """Axes along which nothing repeats: those that plates close, and those that are open."""
-    return closed_axes(case) | {AXES.index(axis) for axis in case.box.open}
-
-
 def obstructed(case: Case) -> bool:
     """Whether there are solids other than the plates of a slit."""
     return bool(case.walls) and slit_of(case) is None
@@ -314,12 +268,8 @@ def obstructed(case: Case) -> bool:
 
 def quiet_axes(case: Case) -> tuple[int, ...]:
     """Axes that no wall closes and along which nothing flows."""
-    closed = closed_axes(case)
-    return tuple(
-        axis
-        for axis in range(case.box.dimension)
-        if axis not in closed and flow(case, axis).kind == "rest"
-    )
+    unwalled = sorted({*range(case.box.dimension)} - closed_axes(case))
+    return tuple(axis for axis in unwalled if flow(case, axis).kind == "rest")
 
 
 class Flow(NamedTuple):
@@ -351,27 +301,25 @@ def bin_average(function: Callable[[Array], Array], edges: Array) -> Array:
 def flow(case: Case, component: int) -> Flow:
     """The steady flow along axis number `component`."""
     box, plates = case.box, slit_of(case)
+    rest = Flow("rest", 1, np.zeros_like)
     if plates is None and case.walls:
-        return Flow("round solids", 1, None) if driven(case) else Flow("rest", 1, np.zeros_like)
+        return Flow("round solids", 1, None) if driven(case) else rest
     if plates and not (box.sheared and plates.lower.rule == plates.upper.rule == "slip"):
         return _slit(case, plates, component)
     if box.sheared:
         if case.fluid.force.acts:
             return Flow("driven shear", 1, None)
         if component != 0:
-            return Flow("rest", 1, np.zeros_like)
+            return rest
         if not box.steady_rate:
             return Flow("oscillating shear" if box.oscillation else "changing shear", 1, None)
         rate, length = box.steady_rate, float(box.size[1])
         return Flow("lees-edwards", 1, lambda y: theory.lees_edwards_velocity(y, length, rate))
     force = case.fluid.force
     if force.uniform(box.dimension) is None:
-        coefficients = transport(case)
-        viscosity = coefficients.viscosity if coefficients else None
-        return Flow(*force.steady_flow(component, box.size, viscosity))
-    if uniform_acceleration(case)[component]:
-        return Flow("accelerating", 1, None)
-    return Flow("rest", 1, np.zeros_like)
+        known = transport(case)
+        return Flow(*force.steady_flow(component, box.size, known.viscosity if known else None))
+    return Flow("accelerating", 1, None) if uniform_acceleration(case)[component] else rest
 
 
 def flowing_axes(case: Case) -> list[Axis]:
@@ -402,10 +350,8 @@ def _slit(case: Case, wall: Plates, component: int) -> Flow:
         return Flow("sheared slit", across, None)
     if component == across:
         return Flow("rest", across, np.zeros_like)
-    height, acceleration_along = (
-        float(case.box.size[across]),
-        float(uniform_acceleration(case)[component]),
-    )
+    height = float(case.box.size[across])
+    acceleration_along = float(uniform_acceleration(case)[component])
     lower, upper = (surface_velocity(s, component) for s in (wall.lower, wall.upper))
     sticky = [s.rule == "no-slip" for s in (wall.lower, wall.upper)]
     force = case.fluid.force
@@ -413,23 +359,17 @@ def _slit(case: Case, wall: Plates, component: int) -> Flow:
         return Flow(f"{name_of(force)} slit", across, None)
     if not any(sticky):
         return Flow("plug", across, None if acceleration_along else np.zeros_like)
-    kind = (
-        "poiseuille"
-        if acceleration_along
-        else "couette"
-        if lower != upper and all(sticky)
-        else "rest"
-    )
     if not acceleration_along:
+        kind = "couette" if lower != upper and all(sticky) else "rest"
         lower, upper = (lower if sticky[0] else upper), (upper if sticky[1] else lower)
         return Flow(kind, across, lambda y: theory.couette_velocity(y, height, upper, lower))
     coefficients = transport(case)
     if coefficients is None:
-        return Flow(kind, across, None)
+        return Flow("poiseuille", across, None)
     nu = coefficients.viscosity
     if all(sticky):
         return Flow(
-            kind,
+            "poiseuille",
             across,
             lambda y: (
                 theory.couette_velocity(y, height, upper, lower)

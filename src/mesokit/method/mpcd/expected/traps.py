@@ -85,10 +85,6 @@ def held(case: Case, kind: int | str) -> Held | None:
     shape = theory.trapped_shape(bonds, stiff, k, np.zeros_like(total), total, fluid.kT)
     alone = free_diffusion(case, kind=kind)
     slowest = float(np.linalg.eigvalsh(shape.covariance)[-1])
-    return Held(
-        shape.centre,
-        shape.centre_variance,
-        shape.mean,
-        np.diag(shape.covariance),
-        None if alone is None else slowest / alone,
-    )
+    time = None if alone is None else slowest / alone
+    variances = shape.centre_variance, shape.mean, np.diag(shape.covariance)
+    return Held(shape.centre, *variances, time)

@@ -37,18 +37,16 @@ class Velocities:
         thermal = setting.at_kT(case)
         self.known = thermal and self.axis in still, thermal and len(still) == d
         closed, part = not (case.walls or self.driven), len(self.ids) / case.particles
-        self.taken_by_mean = part * self._alike() if closed else 0.0
-        self.taken_by_energy = 0.0
-        self.kept_energy = part if closed and not self.isothermal else 0.0
-        self.cumulant = 0.0
-
-    def _alike(self) -> float:
-        """How far particles that differ in mass are one kind where momentum is shared."""
-        fluid = self.case.fluid
+        # how far particles that differ in mass are one kind where momentum is shared
+        fluid = case.fluid
         masses = np.array([kind.mass for kind in fluid.kinds])
         weights = np.array([kind.density for kind in fluid.kinds])
         alike = (weights @ np.sqrt(masses)) ** 2 / (weights.sum() * (weights @ masses))
-        return float(alike * fluid.density * fluid.mass / setting.mass_density(self.case))
+        alike = float(alike * fluid.density * fluid.mass / setting.mass_density(case))
+        self.taken_by_mean = part * alike if closed else 0.0
+        self.taken_by_energy = 0.0
+        self.kept_energy = part if closed and not self.isothermal else 0.0
+        self.cumulant = 0.0
 
     def numbers(self, fluid: RunningFluid) -> Array:
         """Velocities (n, d) over sqrt(kT/m)."""
@@ -66,7 +64,7 @@ class Velocities:
         return "Maxwell"
 
     def note(self, classes: int) -> str:
-        """What to say of it."""
+        """Note on the theory."""
         if self.driven:
             return "approximate: Maxwell about a mean flow"
         return setting.temperature_note(self.case) or f"Maxwell, {classes} classes"

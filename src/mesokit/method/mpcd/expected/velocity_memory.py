@@ -1,4 +1,4 @@
-"""What molecular chaos and hydrodynamics say of how long particles remember their velocity."""
+"""Velocity autocorrelation by molecular chaos and hydrodynamics."""
 
 from typing import Any
 
@@ -37,7 +37,9 @@ class VelocityMemory:
                 self.coefficients.diffusion, fluid.timestep, fluid.kT, fluid.mass
             )
             return np.asarray(theory.vacf_molecular_chaos(steps, g, fluid.kT, fluid.mass))
-        if self._keep_velocities():
+        case = self.case
+        bound = case.walls or fluid.molecule is not None or fluid.mixed
+        if not (fluid.collision.acts or bound or fluid.force.acts):  # velocities never change
             return np.full(len(steps), fluid.kT / fluid.mass)
         return None
 
@@ -45,12 +47,6 @@ class VelocityMemory:
         """Whose law it is."""
         chaos = self.case.fluid.collision.acts
         return setting.chaos_label(self.case) if chaos else "free flight"
-
-    def _keep_velocities(self) -> bool:
-        """Whether particles fly freely, and so for ever as they started."""
-        case = self.case
-        bound = case.walls or case.fluid.molecule is not None or case.fluid.mixed
-        return not (case.fluid.collision.acts or bound or case.fluid.force.acts)
 
     def level(self, error: float, runs: int) -> tuple[float, float] | None:
         """kT/m, and the error of the value at lag 0 with what a start adds to it; None of
@@ -66,15 +62,14 @@ class VelocityMemory:
         return setting.with_start(self.case, error, value, runs)
 
     def share(self, every: int) -> str | None:
-        """What to say of the share that is left after a lag; None if it is not told."""
+        """Note on the share that is left after a lag; None without a theory."""
         if self.coefficients is None:
             return None
         # particles of a fluid at rest have not met before their first collision: it is exact
         return "" if every == 1 else setting.chaos(self.case, "memory lasts longer")
 
     def diffusion(self, every: int) -> tuple[float, str] | None:
-        """The diffusion coefficient that the integral is, and what to say of it; None if it is
-        not told."""
+        """The diffusion coefficient that is the integral, and its note; None without a theory."""
         if self.coefficients is None or every > 1:  # else the sum over steps is not known
             return None
         return self_diffusion(self.case)

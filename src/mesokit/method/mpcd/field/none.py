@@ -21,11 +21,9 @@ class NoForce(Force):
         return 0.0
 
     def uniform(self, dimension: int) -> tuple[float, ...]:
-        """The acceleration, which is the same everywhere."""
         return (0.0,) * dimension
 
     def kernel(self, size: tuple[int, ...]) -> Zero:
-        """Parameters for the scalar function below."""
         return Zero()
 
 
@@ -33,6 +31,4 @@ class Zero(NamedTuple):
     """No acceleration."""
 
 
-@acceleration.register(Zero)
-def _(field, r):
-    return ()
+acceleration.register(Zero)(lambda field, r: ())

@@ -29,11 +29,9 @@ class OscillatingForce(Varying):
         return math.cos(self.frequency * time + math.radians(self.phase))
 
     def swing(self) -> Swing:
-        """The force that it is a cosine of."""
         return Swing(self.of, self.frequency, math.radians(self.phase))
 
     def change(self) -> Cosine:
-        """Parameters for the scalar function below."""
         return Cosine(self.frequency / (2 * math.pi), self.phase / 360.0)
 
 

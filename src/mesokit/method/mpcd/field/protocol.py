@@ -1,4 +1,4 @@
-"""What a body force answers: the acceleration at a place.
+"""Protocol of body forces: the acceleration at a place.
 
 The first argument is the field's NamedTuple of parameters; its class picks the implementation. The
 streaming step takes the acceleration at the middle of the straight flight and keeps it for the
@@ -85,7 +85,7 @@ class Force(ABC):
         yield from ()
 
     def notes(self, size: tuple[int, ...]) -> Iterator[str]:
-        """What one should know of it in a box of this size, key first."""
+        """Remarks on it in a box of this size, key first."""
         yield from ()
 
     def steady_flow(self, component: int, size: tuple[int, ...], viscosity: float | None) -> Driven:

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Box
-from mesokit.case.component import FileName, FromContents, component, param, show, tag
+from mesokit.case.component import component, param, show, tag
 from mesokit.case.given.array_file import array_of_contents
+from mesokit.case.given.file import FileName, FromContents
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.field.protocol import Force, acceleration
 from mesokit.scalar.intrinsics import floor, mul_add, with_item
@@ -118,9 +119,7 @@ class SampledForce(FromContents, Force):
         if not callable(function):
             raise CaseError(f"SampledForce: function = {show(function)}: expected a function")
         places = [np.linspace(0.0, length, length * per_cell + 1) for length in box.size]
-        grid = np.meshgrid(*places, indexing="ij")
-        values = function(*grid)
-        shape = grid[0].shape
+        values, shape = function(*np.meshgrid(*places, indexing="ij")), tuple(map(len, places))
         try:
             if of == "potential":
                 values = np.broadcast_to(values, shape)
@@ -128,11 +127,10 @@ class SampledForce(FromContents, Force):
                 one, *others = values
                 values = [np.broadcast_to(part, shape) for part in (one, *others)]
         except (TypeError, ValueError):
-            wanted = (
-                "a number" if of == "potential" else f"{box.dimension} numbers, one for each axis,"
-            )
+            wanted = f"{box.dimension} numbers, one for each axis,"
             raise CaseError(
-                f"SampledForce: function: expected {wanted} at each place of its arrays"
+                "SampledForce: function: expected "
+                f"{'a number' if of == 'potential' else wanted} at each place of its arrays"
             ) from None
         return cls.from_array(values, file, of)
 
@@ -165,27 +163,26 @@ class SampledForce(FromContents, Force):
 
     @functools.cached_property
     def _tables(self) -> dict[tuple[int, ...], Floats]:
-        return {}  # which compiled code knows by address, for each size of the box
+        return {}  # for each size of the box; compiled code has their addresses
 
     def nodes(self, size: tuple[int, ...]) -> Floats:
         """Acceleration at the nodes (nx, ny[, nz], d) in a box of this size."""
         if size not in self._tables:
             found = self.values
             if self.of == "potential":
-                found = np.stack([self._slope(k, size[k]) for k in range(len(size))])
+                from scipy.interpolate import CubicSpline
+
+                slopes = []
+                for k, length in enumerate(size):
+                    values, ends = self.values, "not-a-knot"
+                    if self.repeats[k]:
+                        ends, values = "periodic", values.copy()
+                        np.moveaxis(values, k, 0)[-1] = np.moveaxis(values, k, 0)[0]
+                    places = np.linspace(0.0, length, self.shape[k])
+                    slopes.append(-np.asarray(CubicSpline(places, values, k, ends)(places, 1)))
+                found = np.stack(slopes)
             self._tables[size] = np.ascontiguousarray(np.moveaxis(found, 0, -1))
         return self._tables[size]
-
-    def _slope(self, axis: int, length: float) -> Floats:
-        """Minus the derivative of the potential along an axis."""
-        from scipy.interpolate import CubicSpline
-
-        places, values = np.linspace(0.0, length, self.shape[axis]), self.values
-        ends = "not-a-knot"
-        if self.repeats[axis]:
-            ends, values = "periodic", values.copy()
-            np.moveaxis(values, axis, 0)[-1] = np.moveaxis(values, axis, 0)[0]
-        return -np.asarray(CubicSpline(places, values, axis, ends)(places, 1))
 
     @property
     def largest(self) -> float:
@@ -193,7 +190,6 @@ class SampledForce(FromContents, Force):
         return self.largest_in(tuple(n - 1 for n in self.shape))
 
     def largest_in(self, size: tuple[int, ...]) -> float:
-        """Largest size of the acceleration in a box of this size."""
         return float(np.linalg.norm(self.nodes(size), axis=-1).max())
 
     def misfits(self, size: tuple[int, ...]) -> Iterator[str]:
@@ -203,9 +199,8 @@ class SampledForce(FromContents, Force):
         except CaseError as error:
             yield str(error)
             return
-        wanted = (
-            f"({'' if self.of == 'potential' else f'{d}, '}{', '.join(['nx', 'ny', 'nz'][:d])})"
-        )
+        axes = ", ".join(["nx", "ny", "nz"][:d])
+        wanted = f"({axes})" if self.of == "potential" else f"({d}, {axes})"
         if len(self.shape) != d or (self.of == "acceleration" and shape[0] != d):
             yield str(self.wrong(f"an array of shape {show(shape)}; expected {wanted} in {d}D"))
 
@@ -213,12 +208,11 @@ class SampledForce(FromContents, Force):
         """Ends of the box that are one place, and have two forces."""
         for axis, repeats in zip(AXES, self.repeats, strict=False):
             if not repeats and axis not in closed:
-                yield str(
-                    self.wrong(
-                        f"first and last nodes along {axis} differ, and no wall closes it; "
-                        "expected nodes at both ends of the box, where they are the same"
-                    )
+                reason = (
+                    f"first and last nodes along {axis} differ, and no wall closes it; "
+                    "expected nodes at both ends of the box, where they are the same"
                 )
+                yield str(self.wrong(reason))
 
     def notes(self, size: tuple[int, ...]) -> Iterator[str]:
         """A grid too coarse for its field."""
@@ -228,12 +222,8 @@ class SampledForce(FromContents, Force):
                 off += float(np.abs(np.diff(nodes, 2, axis)).max()) / 8.0
         share = off / (self.largest_in(size) or 1.0)
         if share > COARSE:
-            yield str(
-                self.wrong(
-                    f"between its nodes the force may be off by {100 * share:.2g} % of the "
-                    "largest; take more nodes"
-                )
-            )
+            reason = f"between its nodes the force may be off by {100 * share:.2g} % of the largest"
+            yield str(self.wrong(f"{reason}; take more nodes"))
 
     def kernel(self, size: tuple[int, ...]) -> Nodes:
         """Parameters for the scalar function below; the force keeps the table alive."""
@@ -328,6 +318,4 @@ def interpolated(field, r):
     return in_square if len(r) == 2 else in_cube
 
 
-@acceleration.register(Nodes)
-def _(field, r):
-    return interpolated(field, r)
+acceleration.register(Nodes)(lambda field, r: interpolated(field, r))

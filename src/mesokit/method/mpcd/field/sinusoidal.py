@@ -33,7 +33,6 @@ class Sinusoidal(Force):
         return abs(self.amplitude)
 
     def waves_across(self) -> int:
-        """How many waves of it the box holds across the flow."""
         return self.waves
 
     def axes(self) -> dict[str, str]:
@@ -47,7 +46,6 @@ class Sinusoidal(Force):
             yield f"flow = {show(self.flow)}: expected an axis that no wall closes"
 
     def steady_flow(self, component: int, size: tuple[int, ...], viscosity: float | None) -> Driven:
-        """Kolmogorov flow."""
         across = AXES.index(self.gradient)
         if AXES.index(self.flow) != component:
             return Driven("rest", across, np.zeros_like)
@@ -72,7 +70,6 @@ class Sinusoidal(Force):
         )
 
     def kernel(self, size: tuple[int, ...]) -> Wave:
-        """Parameters for the scalar function below."""
         flow, gradient = AXES.index(self.flow), AXES.index(self.gradient)
         along = tuple(self.amplitude * (k == flow) for k in range(len(size)))
         turns = tuple((self.waves / size[k]) * (k == gradient) for k in range(len(size)))

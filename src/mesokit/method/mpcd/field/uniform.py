@@ -24,14 +24,12 @@ class Uniform(Force):
         return math.hypot(*self.acceleration)
 
     def uniform(self, dimension: int) -> tuple[float, ...]:
-        """The acceleration, which is the same everywhere."""
         return self.acceleration
 
     def vectors(self) -> dict[str, tuple[float, ...]]:
         return {"acceleration": self.acceleration}
 
     def kernel(self, size: tuple[int, ...]) -> Everywhere:
-        """Parameters for the scalar function below."""
         return Everywhere(self.acceleration)
 
 
@@ -41,6 +39,4 @@ class Everywhere(NamedTuple):
     vector: tuple[float, ...]
 
 
-@acceleration.register(Everywhere)
-def _(field, r):
-    return field.vector
+acceleration.register(Everywhere)(lambda field, r: field.vector)

@@ -34,15 +34,12 @@ class Varying(Force):
         return self.most * self.of.largest
 
     def largest_in(self, size: tuple[int, ...]) -> float:
-        """The same in a box of this size."""
         return self.most * self.of.largest_in(size)
 
     def vectors(self) -> dict[str, tuple[float, ...]]:
-        """Those of the force."""
         return {f"of.{key}": value for key, value in self.of.vectors().items()}
 
     def axes(self) -> dict[str, str]:
-        """Those of the force."""
         return {f"of.{key}": value for key, value in self.of.axes().items()}
 
     def problems(self, closed: Collection[str]) -> Iterator[str]:
@@ -52,15 +49,12 @@ class Varying(Force):
         yield from (f"of.{problem}" for problem in self.of.problems(closed))
 
     def misfits(self, size: tuple[int, ...]) -> Iterator[str]:
-        """What is wrong with the force in a box of this size."""
         yield from (f"of.{problem}" for problem in self.of.misfits(size))
 
     def notes(self, size: tuple[int, ...]) -> Iterator[str]:
-        """What one should know of the force."""
         yield from (f"of.{note}" for note in self.of.notes(size))
 
     def drives(self, component: int) -> bool:
-        """Whether the force acts along this axis."""
         for dimension in (3, 2):
             acceleration = self.of.uniform(dimension)
             if acceleration is not None and component < len(acceleration):
@@ -93,9 +87,7 @@ def factor(change, time):
     """The factor at a time since the start of the warm-up."""
 
 
-@acceleration.register(Scaled)
-def _(field, r):
-    return times(field.factor, acceleration(field.field, r))
+acceleration.register(Scaled)(lambda field, r: times(field.factor, acceleration(field.field, r)))
 
 
 @by_type

@@ -12,7 +12,8 @@ from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import free_bond, shear_note, times_in_shear
+from mesokit.method.mpcd.expected.molecules import free_bond
+from mesokit.method.mpcd.expected.rheometer import shear_note, times_in_shear
 from mesokit.method.mpcd.expected.selection import KIND, beads_of, molecule_of
 from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid

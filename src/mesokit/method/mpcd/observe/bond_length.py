@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import bond_at_rest, bonds_in_shear, shear_note
+from mesokit.method.mpcd.expected.molecules import bond_at_rest
+from mesokit.method.mpcd.expected.rheometer import bonds_in_shear, shear_note
 from mesokit.method.mpcd.expected.selection import KIND, bonds_of, group_of, molecule_of, of_fluid
 from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.seam.engine import RunningFluid, Terms

@@ -9,12 +9,8 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, option, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import (
-    bond_viscosity,
-    shear_note,
-    springs_in,
-    stress_in_shear,
-)
+from mesokit.method.mpcd.expected.molecules import springs_in
+from mesokit.method.mpcd.expected.rheometer import bond_viscosity, shear_note, stress_in_shear
 from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
 from mesokit.observe.shared.short_run import ENOUGH, of_relaxations

@@ -10,8 +10,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import shear_note
-from mesokit.method.mpcd.expected.rheometer import modes_of_stress
+from mesokit.method.mpcd.expected.rheometer import modes_of_stress, shear_note
 from mesokit.method.mpcd.observe.stress import UNIT
 from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.engine import RunningFluid

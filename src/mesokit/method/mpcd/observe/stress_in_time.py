@@ -13,8 +13,8 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import shear_note, springs_in
-from mesokit.method.mpcd.expected.rheometer import spreading_time, stress_of_history
+from mesokit.method.mpcd.expected.molecules import springs_in
+from mesokit.method.mpcd.expected.rheometer import shear_note, spreading_time, stress_of_history
 from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.method.mpcd.observe.stress import UNIT
 from mesokit.seam.engine import RunningFluid

@@ -1,4 +1,4 @@
-"""Molecules whose bonds are a list: dendrimers, networks, whatever hangs together."""
+"""Molecules whose bonds are a list: dendrimers, networks and others of one piece."""
 
 import functools
 from pathlib import Path
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
 from mesokit.method.mpcd.molecule import Molecule
-from mesokit.method.mpcd.topology import Links
+from mesokit.method.mpcd.topology import Links, connectivity
 
 
 def read_links(file: str, columns: int) -> tuple[tuple[int, ...], ...]:
@@ -55,12 +55,9 @@ def linked_parts(bonds: Links, length: int) -> int:
     >>> linked_parts(((0, 1), (2, 3)), 5)
     3
     """
-    from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    rows, columns = np.array(bonds, np.int64).reshape(-1, 2).T
-    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(length, length))
-    return int(connected_components(graph, directed=False)[0])
+    return int(connected_components(connectivity(bonds, length), directed=False)[0])
 
 
 def spanning(bonds: Links, length: int) -> Links:
@@ -109,7 +106,7 @@ class FreeMolecule(Molecule):
         return tuple((before[bead], bead) for bead in range(1, self.length))
 
     def mean_square_bond(self, dimension: int, kT: float) -> float | None:
-        """Mean over its bonds of the square length; with loops only of springs that know no others:
+        """Mean over its bonds of the square length; with loops only of springs that feel no others:
         n - 1 vectors share the energy of all bonds."""
         square = super().mean_square_bond(dimension, kT)
         if square is None or self.loops == 0:
@@ -126,10 +123,6 @@ def phantom(molecule: FreeMolecule, kT: float, normal: NDArray[np.float64]) -> N
     """
     spring = molecule.bond.spring()
     assert spring is not None
-    matrix = np.zeros((molecule.length, molecule.length))
-    for i, j in molecule.bonds:
-        matrix[[i, j], [i, j]] += 1.0
-        matrix[[i, j], [j, i]] -= 1.0
-    values, vectors = np.linalg.eigh(matrix)
+    values, vectors = np.linalg.eigh(connectivity(molecule.bonds, molecule.length))
     spread = np.sqrt(kT / (spring.k * values[1:]))
     return np.asarray(vectors[:, 1:] @ (spread[:, None] * normal[1:]))

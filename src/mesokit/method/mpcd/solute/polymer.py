@@ -1,7 +1,8 @@
 """One kind of solute, and what acts between two kinds."""
 
-from mesokit.case.component import FileName, component, param
+from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
+from mesokit.case.given.file import FileName
 from mesokit.method.mpcd import topology as links
 from mesokit.method.mpcd.solute.free import linked_parts, problem, read_links
 from mesokit.potential import Angle, Bond, Pair
@@ -42,7 +43,27 @@ class Polymer:
     )
 
     def __post_init__(self) -> None:
-        self._check_free()
+        if self.topology == "free":  # lists of links that are read once, and make one molecule
+            if self.bonds is None:
+                raise ValueError("bonds: missing; topology = 'free' needs them")
+            for key, columns in (("bonds", 2), ("angles", 3)):
+                given = getattr(self, key)
+                try:
+                    rows = read_links(given, columns) if isinstance(given, str) else given
+                except ValueError as error:
+                    raise ValueError(f"{key} = {error}") from None
+                if wrong := problem(rows or (), self.length, columns):
+                    raise ValueError(f"{key}: {wrong}")
+                object.__setattr__(self, key, rows)
+            parts = linked_parts(self.pairs_of_beads, self.length)
+            if parts > 1:
+                raise ValueError(
+                    f"bonds: they leave {parts} pieces; expected one molecule of {self.length} "
+                    "beads (length)"
+                )
+        elif self.bonds is not None or self.angles is not None:
+            key = "angles" if self.bonds is None else "bonds"
+            raise ValueError(f"{key}: only with topology = 'free'")
         if self.length == 1:
             if self.topology != "chain" or self.arms is not None:
                 raise ValueError(f"topology = {self.topology!r}: a monomer is a chain")
@@ -52,32 +73,6 @@ class Polymer:
             raise ValueError("bending: only with length = 3 or more")
         if self.name is not None and (len(self.name) < 2 or not self.name.isprintable()):
             raise ValueError(f"name = {self.name!r}: expected two letters or more")
-
-    def _check_free(self) -> None:
-        """Lists of links that are read once, and make one molecule."""
-        if self.topology != "free":
-            for key in ("bonds", "angles"):
-                if getattr(self, key) is not None:
-                    raise ValueError(f"{key}: only with topology = 'free'")
-            return
-        if self.bonds is None:
-            raise ValueError("bonds: missing; topology = 'free' needs them")
-        for key, columns in (("bonds", 2), ("angles", 3)):
-            given = getattr(self, key)
-            try:
-                rows = read_links(given, columns) if isinstance(given, str) else given
-            except ValueError as error:
-                raise ValueError(f"{key} = {error}") from None
-            wrong = problem(rows or (), self.length, columns)
-            if wrong:
-                raise ValueError(f"{key}: {wrong}")
-            object.__setattr__(self, key, rows)
-        parts = linked_parts(self.pairs_of_beads, self.length)
-        if parts > 1:
-            raise ValueError(
-                f"bonds: they leave {parts} pieces; expected one molecule of {self.length} beads "
-                "(length)"
-            )
 
     @property
     def pairs_of_beads(self) -> links.Links:

@@ -1,4 +1,4 @@
-"""Arrays to start from: given, or read from the files that a case names, and checked."""
+"""Arrays to start from: given, or read from files of the case, and checked."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.given.array_file import EXPECTED, array_in_file, is_plain
 from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError, MesokitError
@@ -17,7 +18,6 @@ from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.start.section import Start
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
     from mesokit.processes.world import World
 
 
@@ -48,13 +48,8 @@ def read_by_first(here: World, read: Callable[[], tuple[Any, ...]]) -> tuple[Any
     )
 
 
-def told_by_first(here: World, read: Callable[[], tuple[Any, ...]]) -> tuple[Any, ...]:
-    """The same, where all ranks are to have them whole."""
-    return here.on_root(lambda: tuple(None if x is None else np.asarray(x) for x in read()))
-
-
 def rows_of(array: Any) -> Any:
-    """The rows that are here, which is nothing where another rank has them."""
+    """The rows that are here; None if another rank has them."""
     return array.rows if isinstance(array, OfFirst) else array
 
 
@@ -69,10 +64,10 @@ def read_arrays(
 ) -> tuple[Any, Any]:
     """The arrays to start from: those given, or those that the case names; None where none.
 
-    Rows of a .npy file without a scale or of an earlier run are read where they are asked for. Of
-    several ranks (`here`) each looks at its share of what all have, and all hear what is wrong.
+    Rows of a .npy file without a scale or of an earlier run are read where they are needed. Of
+    several ranks (`here`) each checks its share of what all have, and all raise the same error.
     Other files rank 0 reads alone (`OfFirst`), but for those of solutes, whose beads all ranks
-    know.
+    have.
 
     `owner` is "fluid" or "solutes". `states` gives for each key that names a whole state (`run`,
     `file`) what reads positions and velocities that suit the case. Raises CaseError if an array is
@@ -81,14 +76,35 @@ def read_arrays(
     """
     given: Start = getattr(case, owner).start
     where = f"{owner}.start"
-    _once(where, given, positions=positions, velocities=velocities)
+    for name, array in (("positions", positions), ("velocities", velocities)):
+        for key in ("run", "file", name):
+            said = getattr(given, key)
+            if array is not None and said is not None:
+                raise CaseError(f"{where}.{key} = {said!r}: not with an array of {name}")
     keys = f"{where}.positions", f"{where}.velocities"
-    taken = partial(read_by_first if owner == "fluid" else told_by_first, here)
+
+    def taken(read: Callable[[], tuple[Any, ...]]) -> tuple[Any, ...]:
+        if owner == "fluid":
+            return read_by_first(here, read)
+        return here.on_root(lambda: tuple(None if x is None else np.asarray(x) for x in read()))
+
+    def mapped(path: str) -> bool:  # a file whose rows each rank may read by itself
+        try:
+            return is_plain(path)
+        except OSError:
+            return False
 
     def loaded(name: str, path: str) -> Any:
-        key = f"{where}.{name} = {path!r}"
-        load = partial(_load, case, owner, key, name, path)
-        if owner == "fluid" and given.scale is None and here.on_root(lambda: _is_map(path)):
+        def load() -> Any:
+            try:
+                return array_in_file(path, name, _shape(case, owner), given.scale)
+            except (OSError, ValueError) as error:
+                reason = str(error)
+                if isinstance(error, OSError):
+                    reason = f"{EXPECTED}: {error.strerror}"
+                raise CaseError(f"{where}.{name} = {path!r}: {reason}") from None
+
+        if owner == "fluid" and given.scale is None and here.on_root(lambda: mapped(path)):
             return here.each(load)
         return taken(lambda: (load(),))[0]
 
@@ -108,8 +124,12 @@ def read_arrays(
         if velocities is None and given.velocities is not None:
             velocities = loaded("velocities", given.velocities)
     if positions is not None:
-        if owner == "fluid":
-            _no_conformation(case)
+        molecule = case.fluid.molecule
+        if owner == "fluid" and molecule is not None and molecule.conformation != "thermal":
+            raise CaseError(
+                f"fluid.molecule.conformation = {molecule.conformation!r}: no effect with "
+                "positions to start from; leave it out"
+            )
         positions = here.each(partial(_checked, case, owner, keys[0], positions, here))
         here.each(partial(_require_room, case, keys[0], positions, here))
     if velocities is not None:
@@ -117,45 +137,7 @@ def read_arrays(
     return positions, velocities
 
 
-def _once(where: str, given: Start, **arrays: Any) -> None:
-    """No array beside a file or run that says the same."""
-    for name, array in arrays.items():
-        for key in ("run", "file", name):
-            said = getattr(given, key)
-            if array is not None and said is not None:
-                raise CaseError(f"{where}.{key} = {said!r}: not with an array of {name}")
-
-
-def _no_conformation(case: Case) -> None:
-    """Nothing about how molecules are drawn where they are not."""
-    molecule = case.fluid.molecule
-    if molecule is not None and molecule.conformation != "thermal":
-        raise CaseError(
-            f"fluid.molecule.conformation = {molecule.conformation!r}: no effect with positions "
-            "to start from; leave it out"
-        )
-
-
-def _is_map(path: str) -> bool:
-    """Whether each rank may read its rows of a file by itself."""
-    try:
-        return is_plain(path)
-    except OSError:
-        return False
-
-
-def _load(case: Case, owner: str, key: str, name: str, path: str) -> Any:
-    """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
-    try:
-        scale = getattr(case, owner).start.scale
-        return array_in_file(path, name, _shape(case, owner), scale)
-    except (OSError, ValueError) as error:
-        reason = f"{EXPECTED}: {error.strerror}" if isinstance(error, OSError) else f"{error}"
-        raise CaseError(f"{key}: {reason}") from None
-
-
 def _shape(case: Case, owner: str) -> tuple[int, int]:
-    """One row for each of the particles or beads."""
     beads = case.solutes.beads if owner == "solutes" and case.solutes else case.particles
     return beads, case.box.dimension
 
@@ -198,32 +180,19 @@ def _pieces(array: Any, here: World, alone: bool) -> Iterator[tuple[int, Floats]
 
 
 def _require_room(case: Case, key: str, given: Any, here: World) -> None:
-    """Refuse positions where no particle may be."""
+    """Refuse positions in walls, and those so far away that image counts overflow."""
     array = rows_of(given)
-    if array is not None:
-        for first, rows in _pieces(array, here, isinstance(given, OfFirst)):
-            _inside(case, key, first, rows)
-            _near(case, key, first, rows)
-            if key.endswith(".positions") and case.fluid.molecule is None:  # which may cross edges
-                warn_outside(key, rows, case.box, [*closed_axes(case.walls), *case.box.open], first)
-
-
-def _inside(case: Case, key: str, first: int, positions: Floats) -> None:
-    """Refuse positions in a wall."""
-    if not case.walls:
-        return
-    outside = solids_of(case).distance(positions) < 0
-    if outside.any():
-        row = int(np.argmax(outside))
-        raise CaseError(f"{key}: row {first + row} = {positions[row].tolist()} lies in a wall")
-
-
-def _near(case: Case, key: str, first: int, positions: Floats) -> None:
-    """Refuse positions so far away that image counts overflow."""
-    far = np.abs(positions / case.box.size) >= MOST_IMAGES
-    if far.any():
-        row = int(np.argmax(far.any(axis=1)))
-        raise CaseError(
-            f"{key}: row {first + row} = {positions[row].tolist()} is 2^30 boxes away or more; "
-            "expected positions nearer to the box"
-        )
+    for first, rows in () if array is None else _pieces(array, here, isinstance(given, OfFirst)):
+        solid = solids_of(case).distance(rows) < 0 if case.walls else np.zeros(len(rows), bool)
+        if solid.any():
+            row = int(np.argmax(solid))
+            raise CaseError(f"{key}: row {first + row} = {rows[row].tolist()} lies in a wall")
+        far = (np.abs(rows / case.box.size) >= MOST_IMAGES).any(axis=1)
+        if far.any():
+            row = int(np.argmax(far))
+            raise CaseError(
+                f"{key}: row {first + row} = {rows[row].tolist()} is 2^30 boxes away or more; "
+                "expected positions nearer to the box"
+            )
+        if key.endswith(".positions") and case.fluid.molecule is None:  # which may cross edges
+            warn_outside(key, rows, case.box, [*closed_axes(case.walls), *case.box.open], first)

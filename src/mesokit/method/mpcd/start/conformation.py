@@ -7,23 +7,19 @@ relaxation times. They are those of D. Toneian, diploma thesis, TU Wien (2015), 
 compare with.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solute.free import spanning
 from mesokit.method.mpcd.start.draws import Draws
+from mesokit.method.mpcd.topology import pairs
 from mesokit.potential.protocol import angular, central
 from mesokit.potential.thermal import lengths, mean_square
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.molecule import Molecule
 
 Floats = NDArray[np.float64]
 TRIES = 500  # to place the molecules that do not fit where they were drawn
@@ -45,12 +41,23 @@ def drawn(
     as `octant` has them. Molecules that reach into a solid or have beads that repel one another
     strongly are drawn again. Raises RunError if that is in vain.
     """
-    d, number = len(box), len(random.ids)
-    places = np.empty((number, molecule.length, d))
-    left = np.arange(number)
+    d, ring = len(box), molecule.topology == "ring"
+    places = np.empty((len(random.ids), molecule.length, d))
+    left = np.arange(len(places))
     for _ in range(TRIES):
-        places[left] = _one_draw(molecule, kT, box, random)
-        good = in_fluid(places[left]).all(axis=1) & _relaxed(molecule, places[left], kT)
+        new = np.empty((len(left), molecule.length, d))
+        new[:, 0] = random.units(d) * box
+        bonds = np.stack([first_bonds(molecule, kT, d, random) for _ in molecule.bonds])
+        if ring:
+            bonds -= bonds.mean(axis=0)  # the last one leads back; Gaussian bonds stay Gaussian
+        came: dict[int, int] = {}  # bond by which each bead was reached
+        for n, (a, b) in enumerate(molecule.bonds[:-1] if ring else molecule.bonds):
+            if molecule.bending is not None and a in came and not ring:
+                bonds[n] = turned(molecule, bonds[came[a]], bonds[n], kT, random)
+            new[:, b] = new[:, a] + bonds[n]
+            came[b] = n
+        good = in_fluid(new).all(axis=1) & _relaxed(molecule, new, kT)
+        places[left] = new
         left, random = left[~good], random.of(~good)
         if len(left) == 0:
             return places.reshape(-1, d)
@@ -58,24 +65,6 @@ def drawn(
         f"fluid.molecule: no place for {len(left)} of {len(places)} molecules; they are too large "
         "for the room between the solids, or their beads too large for one another"
     )
-
-
-def _one_draw(molecule: Molecule, kT: float, box: Floats, random: Draws) -> Floats:
-    d = len(box)
-    places = np.empty((len(random.ids), molecule.length, d))
-    places[:, 0] = random.units(d) * box
-    ring = molecule.topology == "ring"
-    links = molecule.bonds[:-1] if ring else molecule.bonds
-    bonds = np.stack([first_bonds(molecule, kT, d, random) for _ in molecule.bonds])
-    if ring:
-        bonds -= bonds.mean(axis=0)  # the last one leads back; Gaussian bonds stay Gaussian
-    came: dict[int, int] = {}  # bond by which each bead was reached
-    for n, (a, b) in enumerate(links):
-        if molecule.bending is not None and a in came and not ring:
-            bonds[n] = turned(molecule, bonds[came[a]], bonds[n], kT, random)
-        places[:, b] = places[:, a] + bonds[n]
-        came[b] = n
-    return places
 
 
 def first_bonds(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
@@ -124,12 +113,10 @@ def _relaxed(molecule: Molecule, places: Floats, kT: float) -> NDArray[np.bool_]
     """Molecules none of whose beads have too much energy, by bonds not drawn by their energy (those
     that close a ring, and those of an octant) or by repulsion."""
     good = np.ones(len(places), bool)
-    pair = molecule.pair.kernel() if molecule.pair is not None else None
-    if pair is not None:
-        limit = nearest_of(pair, kT)
-        for i in range(molecule.length):
-            for j in range(i + 1, molecule.length):
-                good &= np.linalg.norm(places[:, j] - places[:, i], axis=1) > limit
+    if molecule.pair is not None:
+        limit = nearest_of(molecule.pair.kernel(), kT)
+        for i, j in pairs(molecule.length):
+            good &= np.linalg.norm(places[:, j] - places[:, i], axis=1) > limit
     if molecule.topology == "ring" or molecule.conformation == "octant":
         for a, b in molecule.bonds:
             length = np.linalg.norm(places[:, b] - places[:, a], axis=1)

@@ -1,4 +1,4 @@
-"""What is drawn for each particle or molecule by its number: in any part, in any order."""
+"""Random numbers of each particle or molecule by its id: in any part, in any order."""
 
 from __future__ import annotations
 
@@ -39,19 +39,9 @@ def draw_normals(seed, purpose, ids, draw, zero, vectors):
 class Draws:
     """Random numbers of one purpose for those with some numbers, each from a sequence of its own.
 
-    Parameters
-    ----------
-    seed : int
-        Of the run.
-    purpose : uint64
-        One of those in `mesokit.scalar.random`.
-    ids : array (n,) of int
-        Numbers of the particles or molecules.
-    draw : int, optional
-        How many times these have drawn before.
+    Parameters: `seed` of the run; `purpose`, one of those in `mesokit.scalar.random`; `ids` (n,) of
+    the particles or molecules; `draw`, how many times these have drawn before.
 
-    Examples
-    --------
     >>> from mesokit.scalar.random import INITIAL_POSITION
     >>> all_four = Draws(1, INITIAL_POSITION, range(4)).units(3)
     >>> bool((Draws(1, INITIAL_POSITION, [2]).units(3) == all_four[2]).all())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io import checkpoint
@@ -17,9 +18,7 @@ from mesokit.method.mpcd.start.snapshot import fitted, fitted_beads
 from mesokit.processes.alone import Alone
 
 if TYPE_CHECKING:
-    from mesokit.case.case import Case
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-    from mesokit.method.mpcd.solutes import Solutes
     from mesokit.processes.world import World
 
 ALONE = Alone()
@@ -42,15 +41,21 @@ def first_state(
     bead_velocities: Any = None,
     here: World = ALONE,
 ) -> FirstState:
-    """What to start from: given, or what the case names; None stands for what is to be drawn.
+    """Arrays to start from: those given, or those that the case names; None: to be drawn.
 
-    All ranks, which are `here`, ask at the same time; `OfFirst` is what rank 0 has for all.
+    All ranks (`here`) call it at the same time; an `OfFirst` is on rank 0 for all.
 
     Raises CaseError for arrays that do not fit the case, and for files and runs that cannot be
     read.
     """
     fluid = read_arrays(
-        case, "fluid", positions, velocities, here, run=_last_state, file=_from_file
+        case,
+        "fluid",
+        positions,
+        velocities,
+        here,
+        run=_last_state,
+        file=lambda case, path: fitted(case, read_snapshot(path, case.fluid.start.scale)),
     )
     if case.solutes is None:
         for name, array in (("beads", beads), ("bead_velocities", bead_velocities)):
@@ -58,17 +63,16 @@ def first_state(
                 raise CaseError(f"{name}: there are no solutes in this case")
         return FirstState(*fluid, None, None)
     solutes = read_arrays(
-        case, "solutes", beads, bead_velocities, here, run=_last_beads, file=_beads_from_file
+        case,
+        "solutes",
+        beads,
+        bead_velocities,
+        here,
+        run=_last_beads,
+        file=lambda case, path: fitted_beads(case, read_snapshot(path, case.solutes.start.scale)),
     )
-    if solutes[0] is None:
-        _require_drawable(case.solutes)
-    return FirstState(*fluid, *solutes)
-
-
-def _require_drawable(solutes: Solutes) -> None:
-    """Raise CaseError for free molecules whose beads must be given places."""
-    for kind in range(len(solutes.polymers)):
-        molecule = solutes.molecule(kind)
+    for kind in range(len(case.solutes.polymers)) if solutes[0] is None else ():
+        molecule = case.solutes.molecule(kind)
         if isinstance(molecule, FreeMolecule) and molecule.bond.spring() is None:
             if molecule.loops == 0 and molecule.tree:
                 continue
@@ -77,11 +81,7 @@ def _require_drawable(solutes: Solutes) -> None:
                 f"solutes.start.positions: missing; bonds of solutes.polymers[#{kind + 1}] {why}, "
                 "and only springs without a length of their own can then be drawn"
             )
-
-
-def _beads_from_file(case: Case, path: str) -> tuple[Any, Any]:
-    """Places and velocities of beads, from a file that another program has written."""
-    return fitted_beads(case, read_snapshot(path, case.solutes.start.scale))
+    return FirstState(*fluid, *solutes)
 
 
 def _last_beads(case: Case, path: str) -> tuple[Any, Any]:
@@ -89,22 +89,15 @@ def _last_beads(case: Case, path: str) -> tuple[Any, Any]:
 
     Raises CaseError unless that run has the box and the polymers of the case.
     """
-    _, state = _last_fluid(case, path, lambda case: ("solutes.polymers", _polymers(case)))
+
+    def polymers(case: Case) -> tuple[str, Any]:
+        kinds = case.solutes.polymers if case.solutes is not None else ()
+        rows = [(k.number, k.length, k.topology, k.arms, *k.pairs_of_beads) for k in kinds]
+        return "solutes.polymers", rows
+
+    _, state = _last_fluid(case, path, polymers)
     shape = -1, case.box.dimension
     return state["solute_r"].reshape(shape), state["solute_v"].reshape(shape)
-
-
-def _polymers(case: Case) -> list[tuple[Any, ...]]:
-    """Number, length, topology and arms of each kind of solutes."""
-    kinds = case.solutes.polymers if case.solutes is not None else ()
-    return [
-        (kind.number, kind.length, kind.topology, kind.arms, *kind.pairs_of_beads) for kind in kinds
-    ]
-
-
-def _from_file(case: Case, path: str) -> tuple[Any, Any]:
-    """Positions and velocities, by particle id, of a file that another program has written."""
-    return fitted(case, read_snapshot(path, case.fluid.start.scale))
 
 
 def _last_state(case: Case, path: str) -> tuple[Any, Any]:
@@ -114,23 +107,25 @@ def _last_state(case: Case, path: str) -> tuple[Any, Any]:
     """
     from mesokit.method.mpcd.engine.measure.earlier import EarlierRows
 
-    told = lambda case: ("particles of (mass, number)", _kinds(case))  # noqa: E731
-    fluid = _last_fluid(case, path, told)
+    def kinds(case: Case) -> tuple[str, Any]:
+        rows = [(kind.mass, kind.number) for kind in case.groups[0].kinds]
+        return "particles of (mass, number)", rows
+
+    fluid = _last_fluid(case, path, kinds)
     return EarlierRows(*fluid, "positions"), EarlierRows(*fluid, "velocities")
 
 
 def _last_fluid(
-    case: Case, path: str, told: Callable[[Case], tuple[str, Any]]
+    case: Case, path: str, same: Callable[[Case], tuple[str, Any]]
 ) -> tuple[Numbers, dict[str, Any]]:
-    """An earlier run and its last state, if its box and what is told of it are the same."""
-    from mesokit.case.case import Case
+    """An earlier run and its last state, if its box and `same` are those of the case."""
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
     directory = RunDirectory.existing(path)
     earlier = Case.from_toml(directory.case_file)
     if earlier.run.method != case.run.method:
         raise CaseError(f"that is a run of method {show(earlier.run.method)}")
-    (what, there), (_, here) = told(earlier), told(case)
+    (what, there), (_, here) = same(earlier), same(case)
     for name, one, other in (
         ("a box of", list(earlier.box.size), list(case.box.size)),
         (what, there, here),
@@ -139,8 +134,3 @@ def _last_fluid(
             raise CaseError(f"that run has {name} {show(one)}, this case {show(other)}")
     arrays, _ = checkpoint.read(directory.checkpoint_file, large=LARGE)
     return Numbers(earlier), checkpoint.part(arrays, "engine/")
-
-
-def _kinds(case: Case) -> list[tuple[float, int]]:
-    """Mass and number of each kind of particles."""
-    return [(kind.mass, kind.number) for kind in case.groups[0].kinds]

@@ -6,13 +6,13 @@ chance, and is put elsewhere otherwise. The attraction of a well is left out: th
 as dense as far away.
 """
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.box import AXES
 from mesokit.errors import RunError
 from mesokit.geometry.solids.contact import MARGIN
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
@@ -21,17 +21,46 @@ from mesokit.method.mpcd.start.arrays import OfFirst, rows_of
 from mesokit.method.mpcd.start.conformation import connected, drawn, nearest_of
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.start.growth import grown
-from mesokit.method.mpcd.start.room import periods, stays_out
-from mesokit.potential.protocol import Pair
 from mesokit.potential.thermal import energies
 from mesokit.scalar.fixed_point import added_halves, halves
 from mesokit.scalar.random import FIRST_BEAD, INITIAL_POSITION, INITIAL_VELOCITY
 
+Floats = NDArray[np.float64]
+Ids = NDArray[np.int64]
 FIRST_AGAIN = 2**20  # draws of this number and on are of those that were put elsewhere
 TRIES = 1000
 
 
-def out_of_beads(numbers: Numbers, ids: NDArray[np.int64], places: Floats, beads: Floats) -> Floats:
+def stays_out(numbers: Numbers, clear: float = 0.0) -> Callable[[Floats], NDArray[np.bool_]]:
+    """Which of places (..., d) are in the fluid, so far from its surfaces."""
+    if numbers.solids is None:
+        return lambda places: np.ones(places.shape[:-1], bool)
+    if numbers.slit is not None:
+        axis, length = AXES.index(numbers.slit.axis), numbers.box[AXES.index(numbers.slit.axis)]
+        return lambda places: (places[..., axis] > clear) & (places[..., axis] < length - clear)
+    solids, d = numbers.solids, numbers.dimension
+
+    def outside(places: Floats) -> NDArray[np.bool_]:
+        inside_box = places.reshape(-1, d).copy()
+        good = np.ones(len(inside_box), bool)
+        for k, shut in enumerate(numbers.closed):
+            x = inside_box[:, k]
+            if shut:
+                good &= (x > clear) & (x < numbers.box[k] - clear)
+            else:
+                x -= np.floor(x / numbers.box[k]) * numbers.box[k]
+        good[good] = solids.distance(inside_box[good]) >= max(clear, MARGIN)
+        return good.reshape(places.shape[:-1])
+
+    return outside
+
+
+def periods(numbers: Numbers) -> Floats:
+    """Lengths of the box, infinite where walls close it."""
+    return np.where(numbers.closed, np.inf, numbers.box)
+
+
+def out_of_beads(numbers: Numbers, ids: Ids, places: Floats, beads: Floats) -> Floats:
     """Places (n, d) of particles with these numbers, those that beads push away drawn again.
 
     Raises RunError where beads leave no room.
@@ -39,10 +68,23 @@ def out_of_beads(numbers: Numbers, ids: NDArray[np.int64], places: Floats, beads
     solutes = numbers.case.solutes
     if solutes is None or solutes.solvent_pair is None or not len(places):
         return places
-    random = Draws(numbers.case.run.seed, INITIAL_POSITION, ids, FIRST_AGAIN)
+    from scipy.spatial import cKDTree
+
+    pair, period = solutes.solvent_pair, periods(numbers)
+    boxes = np.where(np.isfinite(period), period, 0.0)
+
+    def tree(x: Floats) -> cKDTree:
+        inside = np.where(boxes > 0.0, x % np.where(boxes > 0.0, boxes, 1.0), x)
+        return cKDTree(inside, boxsize=boxes)
+
+    random, around = Draws(numbers.case.run.seed, INITIAL_POSITION, ids, FIRST_AGAIN), tree(beads)
     left, kT = np.arange(len(places)), numbers.case.fluid.kT
     for _ in range(TRIES):
-        energy = _energy(numbers, places[left], beads, solutes.solvent_pair)
+        # the energy of each place, by all beads near it, in the same order among any others
+        near = around.sparse_distance_matrix(tree(places[left]), pair.reach, output_type="ndarray")
+        near = near[np.lexsort((near["i"], near["j"]))]
+        energy = np.zeros(len(left))
+        np.add.at(energy, near["j"], energies((pair.kernel(),), near["v"]))
         repelled = random.units(1)[:, 0] >= np.exp(-np.clip(energy / kT, 0.0, None))
         if numbers.solids is not None and numbers.slit is None:
             repelled |= numbers.solids.distance(places[left]) < MARGIN
@@ -51,23 +93,6 @@ def out_of_beads(numbers: Numbers, ids: NDArray[np.int64], places: Floats, beads
         left, random = left[repelled], random.of(repelled)
         places[left] = random.units(numbers.dimension) * numbers.box
     raise RunError("solutes.solvent_pair: the beads leave no room to the fluid; expected fewer")
-
-
-def _energy(numbers: Numbers, places: Floats, beads: Floats, pair: Pair) -> Floats:
-    """Of each place, by all beads near it."""
-    from scipy.spatial import cKDTree
-
-    period = periods(numbers)
-    boxes = np.where(np.isfinite(period), period, 0.0)
-    inside = [
-        np.where(boxes > 0.0, x % np.where(boxes > 0.0, boxes, 1.0), x) for x in (places, beads)
-    ]
-    trees = [cKDTree(x, boxsize=boxes) for x in inside]
-    near = trees[1].sparse_distance_matrix(trees[0], pair.reach, output_type="ndarray")
-    near = near[np.lexsort((near["i"], near["j"]))]  # the same order among any others
-    total = np.zeros(len(places))
-    np.add.at(total, near["j"], energies((pair.kernel(),), near["v"]))
-    return total
 
 
 def first_beads(
@@ -99,10 +124,6 @@ def first_beads(
     return places, velocities, drift
 
 
-Floats = NDArray[np.float64]
-Ids = NDArray[np.int64]
-
-
 def start(
     engine: Any,
     positions: Any = None,
@@ -115,8 +136,8 @@ def start(
     Parameters
     ----------
     engine : Engine
-        A fluid in memory; its case says how to draw what is not given, its `parts` which particles
-        are to be made here.
+        A fluid in memory; its case defines how to draw what is not given, its `parts` which
+        particles are to be made here.
     positions, velocities : array (n, d) or rows of a file, optional
         In cells, and in cells per unit of time, by particle number, as `read_arrays` has checked
         them. Where rank 0 alone has some, it makes all particles, a piece at a time.
@@ -128,8 +149,15 @@ def start(
     parts = engine.parts(any(isinstance(array, OfFirst) for array in (positions, velocities)))
     positions, velocities = rows_of(positions), rows_of(velocities)
     drifts: list[Floats] = []  # to take off, one after the other
-    if at_rest:
-        drifts.append(_drift(engine))
+    if at_rest:  # less the mean velocity of all particles, wherever they are made
+        scale = numbers.units["momentum"]
+        sums = np.zeros((2, numbers.dimension), np.int64)
+        for first, last in engine.parts():
+            ids = np.arange(first, last)
+            terms = numbers.masses_of(ids)[:, None] * thermal_velocities(numbers, ids) * scale
+            sums = added_halves(np.stack([sums, halves(np.rint(terms).astype(np.int64))]))
+        momentum = engine.readings.joined(sums, scale)
+        drifts.append(np.asarray(momentum / max(numbers.total_mass, 1e-300)))
     if case.solutes is not None:
         given = beads, bead_velocities
         beads, bead_velocities, drift = first_beads(numbers, case.solutes, *given, at_rest)
@@ -160,7 +188,15 @@ def first_positions(numbers: Numbers, ids: Ids, given: Any, beads: Any = None) -
         places = np.asarray(given[ids[0] : ids[-1] + 1], float)
         return places if molecule is None else connected(places, molecule, periods(numbers))
     if molecule is None:
-        places = _uniform(numbers, Draws(case.run.seed, INITIAL_POSITION, ids))
+        random = Draws(case.run.seed, INITIAL_POSITION, ids)
+        places = random.units(numbers.dimension) * numbers.box
+        among_solids = numbers.solids is not None and numbers.slit is None
+        left = np.arange(len(places) if among_solids else 0)
+        while len(left):  # those in a solid are drawn again
+            assert numbers.solids is not None
+            inside = numbers.solids.distance(places[left]) < MARGIN
+            left, random = left[inside], random.of(inside)
+            places[left] = random.units(numbers.dimension) * numbers.box
         return places if beads is None else out_of_beads(numbers, ids, places, beads)
     random = Draws(case.run.seed, INITIAL_POSITION, ids[:: molecule.length] // molecule.length)
     return drawn(molecule, case.fluid.kT, numbers.box, random, stays_out(numbers))
@@ -170,29 +206,3 @@ def thermal_velocities(numbers: Numbers, ids: Ids) -> Floats:
     """Maxwellian velocities (n, d) of particles with these numbers."""
     found = Draws(numbers.case.run.seed, INITIAL_VELOCITY, ids).normals(numbers.dimension)
     return found * np.sqrt(numbers.case.fluid.kT / numbers.masses_of(ids))[:, None]
-
-
-def _drift(engine: Any) -> Floats:
-    """The mean velocity (d,) of all particles, wherever they are made."""
-    numbers: Numbers = engine.numbers
-    scale = numbers.units["momentum"]
-    sums = np.zeros((2, numbers.dimension), np.int64)
-    for first, last in engine.parts():
-        ids = np.arange(first, last)
-        terms = numbers.masses_of(ids)[:, None] * thermal_velocities(numbers, ids) * scale
-        sums = added_halves(np.stack([sums, halves(np.rint(terms).astype(np.int64))]))
-    momentum = engine.readings.joined(sums, scale)
-    return np.asarray(momentum / max(numbers.total_mass, 1e-300))
-
-
-def _uniform(numbers: Numbers, random: Draws) -> Floats:
-    """Places (n, d) uniform in the fluid: those that lie in a solid are drawn again."""
-    places = random.units(numbers.dimension) * numbers.box
-    if numbers.solids is None or numbers.slit is not None:
-        return places
-    left = np.arange(len(places))
-    while len(left):
-        inside = numbers.solids.distance(places[left]) < MARGIN
-        left, random = left[inside], random.of(inside)
-        places[left] = random.units(numbers.dimension) * numbers.box
-    return places

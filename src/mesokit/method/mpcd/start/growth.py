@@ -11,22 +11,17 @@ import itertools
 import math
 from collections import defaultdict
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solute.free import FreeMolecule, phantom
+from mesokit.method.mpcd.solutes import Solutes
 from mesokit.method.mpcd.start.conformation import first_bonds, nearest_of, turned
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.scalar.random import INITIAL_SOLUTES
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.molecule import Molecule
-    from mesokit.method.mpcd.solutes import Solutes
-    from mesokit.method.mpcd.topology import Links
-    from mesokit.potential import Pair
 
 Floats = NDArray[np.float64]
 InFluid = Callable[[Floats], NDArray[np.bool_]]
@@ -37,12 +32,7 @@ FIRST_OF_POOLS = 2**60  # the number of the first of these bonds; molecules are 
 
 
 def grown(
-    solutes: Solutes,
-    kT: float,
-    box: Floats,
-    periods: Floats,
-    seed: int,
-    in_fluid: InFluid,
+    solutes: Solutes, kT: float, box: Floats, periods: Floats, seed: int, in_fluid: InFluid
 ) -> Floats:
     """Places (beads, d) of all solutes, molecules whole: bonds may leave the box.
 
@@ -57,7 +47,12 @@ def grown(
 
     Raises RunError where there is no room.
     """
-    limits = np.array([[_nearest(pair, kT) for pair in row] for row in solutes.pairs])
+    limits = np.array(  # how near two beads may start to one another
+        [
+            [nearest_of(p.kernel(), kT) if p is not None else 0.0 for p in row]
+            for row in solutes.pairs
+        ]
+    )
     there, before = Placed(solutes.kinds(), box, periods, limits), 0
     # Molecule by molecule, in the order of ids, each among those that are already there. Random
     # numbers follow from the seed and the molecule.
@@ -67,7 +62,9 @@ def grown(
         if molecule:
             first = FIRST_OF_POOLS + POOL * kind
             draws = Draws(seed, INITIAL_SOLUTES, np.arange(first, first + POOL))
-            pool = _pool(molecule, kT, len(box), draws)
+            pool = first_bonds(molecule, kT, len(box), draws)
+            if molecule.bending is not None:  # bonds that follow one along x
+                pool = turned(molecule, np.tile(np.eye(len(box))[0], (POOL, 1)), pool, kT, draws)
         for number in range(polymer.number):
             random = Draws(seed, INITIAL_SOLUTES, [before + number])
             if not _place(there, molecule, pool, kT, random, in_fluid):
@@ -80,19 +77,6 @@ def grown(
     return there.places
 
 
-def _nearest(pair: Pair | None, kT: float) -> float:
-    """How near two beads may start to one another."""
-    return nearest_of(pair.kernel(), kT) if pair is not None else 0.0
-
-
-def _pool(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
-    """Bonds: in any direction or, of stiff molecules, that follow a bond along x."""
-    bonds = first_bonds(molecule, kT, d, random)
-    if molecule.bending is None:
-        return bonds
-    return turned(molecule, np.tile(np.eye(d)[0], (POOL, 1)), bonds, kT, random)
-
-
 def _place(
     there: Placed,
     molecule: Molecule | None,
@@ -101,17 +85,25 @@ def _place(
     random: Draws,
     in_fluid: InFluid,
 ) -> bool:
-    """Add a molecule; whether that worked."""
+    """Add a molecule; true if that worked."""
+    d = len(there.box)
     for _ in range(TRIES):
         done = there.number
-        first = random.units(len(there.box))[0] * there.box
+        first = random.units(d)[0] * there.box
         if isinstance(molecule, FreeMolecule) and not (molecule.tree and molecule.loops == 0):
-            done_well = _draw_network(there, molecule, kT, first, random, in_fluid)
+            # springs in equilibrium, as if beads did not feel one another otherwise
+            normal = np.concatenate([random.normals(d) for _ in range(molecule.length)])
+            placed = there.add_all(first + phantom(molecule, kT, normal), in_fluid, apart=True)
         elif molecule and molecule.topology == "ring":
-            done_well = _grow_ring(there, molecule, pool, first, random, in_fluid)
+            # a regular polygon in any direction, its bonds as long as they are on average
+            side, beads = math.sqrt(float((pool**2).sum(axis=1).mean())), molecule.length
+            angle = 2.0 * math.pi * np.arange(beads) / beads
+            flat = np.stack([np.cos(angle), np.sin(angle)], axis=1) * side
+            ring = np.pad(flat / (2 * math.sin(math.pi / beads)), ((0, 0), (0, d - 2)))
+            placed = there.add_all(first + ring @ _any_turn(d, random), in_fluid)
         else:
-            done_well = _grow(there, molecule, pool, first, random, in_fluid)
-        if done_well:
+            placed = _grow(there, molecule, pool, first, random, in_fluid)
+        if placed:
             return True
         there.remove_from(done)
     return False
@@ -131,11 +123,15 @@ def _grow(
     start = there.number
     there.add(first)
     came: dict[int, Floats] = {}  # the bond by which each bead was reached
-    for a, b in tree_of(molecule) if molecule else ():
+    links = molecule.tree if isinstance(molecule, FreeMolecule) else getattr(molecule, "bonds", ())
+    for a, b in links:  # from a bead to the next one in order
         bonds = pool[(random.units(AT_ONCE)[0] * len(pool)).astype(int)]
         if molecule and molecule.bending is not None:
-            if a in came:
-                bonds = _reflected(bonds, came[a])
+            if a in came:  # in the mirror that takes the x axis to the bond before
+                mirror = np.eye(len(first))[0] - came[a] / np.linalg.norm(came[a])
+                square = float(mirror @ mirror)
+                if square >= 1e-20:
+                    bonds = bonds - np.outer(bonds @ mirror, 2.0 / square * mirror)
             else:
                 bonds = bonds @ _any_turn(len(first), random)
         ends = there.places[start + a] + bonds
@@ -147,63 +143,7 @@ def _grow(
     return True
 
 
-def tree_of(molecule: Molecule) -> Links:
-    """Bonds from a bead to the next one in order."""
-    return molecule.tree if isinstance(molecule, FreeMolecule) else molecule.bonds
-
-
-def _draw_network(
-    there: Placed,
-    molecule: FreeMolecule,
-    kT: float,
-    first: Floats,
-    random: Draws,
-    in_fluid: InFluid,
-) -> bool:
-    """Springs in equilibrium, as if beads did not feel one another otherwise."""
-    normal = np.concatenate([random.normals(len(first)) for _ in range(molecule.length)])
-    places = first + phantom(molecule, kT, normal)
-    if not (in_fluid(places).all() and all(there.free(place) for place in places)):
-        return False
-    for place in places:
-        if not there.free(place):  # of a bead of its own
-            return False
-        there.add(place)
-    return True
-
-
-def _grow_ring(
-    there: Placed,
-    molecule: Molecule,
-    pool: Floats,
-    first: Floats,
-    random: Draws,
-    in_fluid: InFluid,
-) -> bool:
-    """A regular polygon in any direction, its bonds as long as they are on average."""
-    d, beads = len(first), molecule.length
-    side = math.sqrt(float((pool**2).sum(axis=1).mean()))
-    angle = 2.0 * math.pi * np.arange(beads) / beads
-    flat = np.stack([np.cos(angle), np.sin(angle)], axis=1) * side / (2 * math.sin(math.pi / beads))
-    ring = first + np.pad(flat, ((0, 0), (0, d - 2))) @ _any_turn(d, random)
-    if not (in_fluid(ring).all() and all(there.free(bead) for bead in ring)):
-        return False
-    for bead in ring:
-        there.add(bead)
-    return True
-
-
-def _reflected(vectors: Floats, along: Floats) -> Floats:
-    """The vectors in the mirror that takes the x axis to a direction."""
-    mirror = np.eye(len(along))[0] - along / np.linalg.norm(along)
-    square = float(mirror @ mirror)
-    if square < 1e-20:
-        return vectors
-    return vectors - np.outer(vectors @ mirror, 2.0 / square * mirror)
-
-
 def _any_turn(d: int, random: Draws) -> Floats:
-    """A random orthogonal matrix."""
     q, r = np.linalg.qr(np.concatenate([random.normals(d) for _ in range(d)]))
     return q * np.sign(np.diag(r))
 
@@ -219,10 +159,8 @@ class Placed:
     ) -> None:
         self.places, self.number = np.empty((len(kinds), len(box))), 0
         self.kinds, self.squares = kinds, limits**2
-        self.box, self.limit = box, float(limits.max())
-        limit = self.limit
-        self.inverse = 1.0 / periods
-        self.cells = np.maximum((box / max(limit, 1e-300)).clip(max=1000).astype(int), 1)
+        self.box, self.limit, self.inverse = box, float(limits.max()), 1.0 / periods
+        self.cells = np.maximum((box / max(self.limit, 1e-300)).clip(max=1000).astype(int), 1)
         self.inside: dict[tuple[int, ...], list[int]] = defaultdict(list)
 
     def add(self, place: Floats) -> None:
@@ -232,18 +170,31 @@ class Placed:
             self.inside[self._cell(place)].append(self.number)
         self.number += 1
 
+    def add_all(self, places: Floats, in_fluid: InFluid, apart: bool = False) -> bool:
+        """Add beads if all are free in the fluid, and if `apart` of one another; true if that
+        worked."""
+        if not (in_fluid(places).all() and all(map(self.free, places))):
+            return False
+        for place in places:
+            if apart and not self.free(place):
+                return False
+            self.add(place)
+        return True
+
     def remove_from(self, number: int) -> None:
-        """Take the last beads away again, from this number on."""
+        """Remove the last beads, from this number on."""
         for i in range(self.number - 1, number - 1, -1):
             if self.limit > 0.0:
                 self.inside[self._cell(self.places[i])].pop()
         self.number = number
 
     def free(self, place: Floats) -> bool:
-        """Whether all beads are farther from the next one than the limit."""
+        """True if all beads are farther from the next one than the limit."""
         if self.limit <= 0.0:
             return True
-        near = [i for cell in self._around(place) for i in self.inside.get(cell, ())]
+        axes = zip(self._cell(place), self.cells.tolist(), strict=True)
+        around = set(itertools.product(*(((m - 1) % n, m, (m + 1) % n) for m, n in axes)))
+        near = [i for cell in around for i in self.inside.get(cell, ())]
         if not near:
             return True
         separation = self.places[near] - place
@@ -253,10 +204,3 @@ class Placed:
 
     def _cell(self, place: Floats) -> tuple[int, ...]:
         return tuple((np.floor(place / self.box * self.cells).astype(int) % self.cells).tolist())
-
-    def _around(self, place: Floats) -> set[tuple[int, ...]]:
-        axes = [
-            ((m - 1) % n, m, (m + 1) % n)
-            for m, n in zip(self._cell(place), self.cells.tolist(), strict=True)
-        ]
-        return set(itertools.product(*axes))

@@ -1,10 +1,7 @@
 """The table `start` of a case: where positions and velocities come from."""
 
-from __future__ import annotations
-
-from pydantic import model_validator
-
-from mesokit.case.component import FileName, component, param, show
+from mesokit.case.component import component, param, show
+from mesokit.case.given.file import FileName
 
 
 @component
@@ -29,8 +26,6 @@ class Start:
         le=1e12,
     )
 
-    @model_validator(mode="after")
-    def _scaled_file(self) -> Start:
+    def __post_init__(self) -> None:
         if self.scale is not None and not (self.file or self.positions or self.velocities):
             raise ValueError(f"scale = {show(self.scale)}: only with file, positions or velocities")
-        return self

@@ -1,23 +1,16 @@
 """Particles as another program has written them, and whether they are those of a case."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.box import AXES
+from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.conformation import connected
-
-if TYPE_CHECKING:
-    from mesokit.case.case import Case
-    from mesokit.method.mpcd.molecule import Molecule
 
 Numbers = NDArray[np.int64]
 SHOWN = 4  # sizes of molecules that a message lists
@@ -49,8 +42,15 @@ def bead_order(bonds: Numbers, particles: int, molecule: Molecule) -> Numbers:
     ends = np.concatenate([links, links[:, ::-1]])
     ends = ends[np.lexsort(ends.T[::-1])]
     degree = np.bincount(ends[:, 0], minlength=particles)
-    if not _fits(degree, member, molecule):
-        raise CaseError(_other_bonds(molecule))
+    wanted = np.sort(np.bincount(np.ravel(molecule.bonds), minlength=molecule.length))
+    there = degree[np.lexsort((degree, member))].reshape(-1, molecule.length)
+    arms = f" with {molecule.arms} arms of one length" if molecule.arms else ""
+    other_bonds = CaseError(
+        f"its bonds differ from those of the case; expected each molecule to be a "
+        f"{molecule.topology} of {molecule.length} beads{arms} (fluid.molecule)"
+    )
+    if not (there == wanted).all():
+        raise other_bonds
     neighbours = np.full((particles, max(2, int(degree.max()))), -1)
     column = np.arange(len(ends)) - np.repeat(np.cumsum(degree) - degree, degree)
     neighbours[ends[:, 0], column] = ends[:, 1]
@@ -58,27 +58,15 @@ def bead_order(bonds: Numbers, particles: int, molecule: Molecule) -> Numbers:
     first = np.full(count, particles)
     np.minimum.at(first, member, np.arange(particles))
     begin = np.full(count, particles)
-    starts = np.flatnonzero(degree == _degree_of_first(molecule))
+    star = molecule.topology == "star" and molecule.arms is not None and molecule.arms > 2
+    bonds_of_first = molecule.arms if star else 2 if molecule.topology == "ring" else 1
+    starts = np.flatnonzero(degree == bonds_of_first)
     np.minimum.at(begin, member[starts], starts)
     order = _beads(neighbours, begin[np.argsort(first)], molecule)
     found = order[:, np.array(molecule.bonds)].reshape(-1, 2)
     if not np.array_equal(np.unique(np.sort(found, axis=1), axis=0), links):
-        raise CaseError(_other_bonds(molecule))
+        raise other_bonds
     return order.ravel()
-
-
-def _fits(degree: Numbers, member: Numbers, molecule: Molecule) -> bool:
-    """Whether the beads of every molecule have as many bonds as they should, in any order."""
-    wanted = np.bincount(np.ravel(molecule.bonds), minlength=molecule.length)
-    there = degree[np.lexsort((degree, member))].reshape(-1, molecule.length)
-    return bool((there == np.sort(wanted)).all())
-
-
-def _degree_of_first(molecule: Molecule) -> int:
-    """Number of bonds of the bead at which a molecule is entered."""
-    if molecule.topology == "star" and molecule.arms is not None and molecule.arms > 2:
-        return molecule.arms
-    return 2 if molecule.topology == "ring" else 1
 
 
 def _beads(neighbours: Numbers, begin: Numbers, molecule: Molecule) -> Numbers:
@@ -108,14 +96,6 @@ def _path(neighbours: Numbers, before: Numbers, here: Numbers, steps: int) -> Nu
     return np.stack(path, axis=1)
 
 
-def _other_bonds(molecule: Molecule) -> str:
-    arms = f" with {molecule.arms} arms of one length" if molecule.arms else ""
-    return (
-        f"its bonds differ from those of the case; expected each molecule to be a "
-        f"{molecule.topology} of {molecule.length} beads{arms} (fluid.molecule)"
-    )
-
-
 Floats = NDArray[np.float64]
 ROUNDING = 1e-5  # relative, of numbers in single precision and in texts
 
@@ -128,7 +108,14 @@ def fitted(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
     d, n = case.box.dimension, len(there.positions)
     _require_box(case, there)
     if n != case.particles:
-        raise CaseError(_other_number(case, n))
+        hint, density, molecule = "", case.fluid.density, case.fluid.molecule
+        whole = molecule is None or n % molecule.length == 0
+        if whole and case.particles and not case.fluid.species:
+            hint = f"; fluid.density = {show(density * n / case.particles)} makes so many"
+        raise CaseError(
+            f"it has {n} particles, this case {case.particles} "
+            f"(fluid.density = {show(density)}){hint}"
+        )
     order = _by_mass(case, there)
     if case.fluid.molecule is not None:
         if not len(there.bonds):
@@ -172,29 +159,21 @@ def fitted_beads(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
                 "its bonds are not those of solutes.polymers, kind after kind, bead after bead"
             )
     places = _whole(case, there)[order]
-    if there.images is None:
-        places = _connected(case, places)
+    if there.images is None:  # each bead in the image that is nearest to the one it is linked to
+        closed = {*closed_axes(case.walls), *case.box.open}
+        unbounded = [axis in closed for axis in case.box.axes]
+        periods = np.where(unbounded, np.inf, np.array(case.box.size, float))
+        for kind, polymer in enumerate(solutes.polymers):
+            molecule, first = solutes.molecule(kind), solutes.first_bead(kind)
+            part = slice(first, first + polymer.number * polymer.length)
+            if molecule is not None:
+                places[part] = connected(places[part], molecule, periods)
     velocities = None if there.velocities is None else there.velocities[order, :d]
     return places, velocities
 
 
-def _connected(case: Case, places: Floats) -> Floats:
-    """Each bead in the image that is nearest to the one that it hangs on."""
-    assert case.solutes is not None
-    closed = {*closed_axes(case.walls), *case.box.open}
-    axes = AXES[: case.box.dimension]
-    periods = np.where([axis in closed for axis in axes], np.inf, np.array(case.box.size, float))
-    whole = places.copy()
-    for kind, polymer in enumerate(case.solutes.polymers):
-        molecule, first = case.solutes.molecule(kind), case.solutes.first_bead(kind)
-        part = slice(first, first + polymer.number * polymer.length)
-        if molecule is not None:
-            whole[part] = connected(places[part], molecule, periods)
-    return whole
-
-
 def _require_box(case: Case, there: Snapshot) -> None:
-    """The same lengths and right angles; in 2D all particles in one plane."""
+    """Raise CaseError for other lengths, no right angles, or in 2D particles not in one plane."""
     d, size = case.box.dimension, np.array(case.box.size, float)
     if np.abs(there.tilts).max() > ROUNDING:
         raise CaseError(
@@ -208,16 +187,6 @@ def _require_box(case: Case, there: Snapshot) -> None:
         )
     if d == 2 and np.ptp(there.positions[:, 2]) > ROUNDING:
         raise CaseError("its particles differ in z; expected a 2D box as in this case")
-
-
-def _other_number(case: Case, n: int) -> str:
-    """How many there are, and what would make the case fit."""
-    density = f"fluid.density = {show(case.fluid.density)}"
-    whole = case.fluid.molecule is None or n % case.fluid.molecule.length == 0
-    hint = ""
-    if whole and case.particles and not case.fluid.species:
-        hint = f"; fluid.density = {show(case.fluid.density * n / case.particles)} makes so many"
-    return f"it has {n} particles, this case {case.particles} ({density}){hint}"
 
 
 def _by_mass(case: Case, there: Snapshot) -> NDArray[np.int64]:
@@ -242,13 +211,13 @@ def _by_mass(case: Case, there: Snapshot) -> NDArray[np.int64]:
 
 
 def _whole(case: Case, there: Snapshot) -> Floats:
-    """Places (n, d), as if the box had no bounds where the file says in which image they are.
+    """Places (n, d), as if the box had no bounds where the file has their images.
 
     Raises CaseError for a bond so long that the images which it links are ambiguous.
     """
     d = case.box.dimension
     closed = {*closed_axes(case.walls), *case.box.open}
-    open_axes = np.array([axis not in closed for axis in AXES[:d]])
+    open_axes = np.array([axis not in closed for axis in case.box.axes])
     size, places = there.lengths[:d], (there.positions - there.low)[:, :d]
     told = there.images is not None and bool(there.images[:, :d][:, open_axes].any())
     if told:
@@ -262,13 +231,10 @@ def _whole(case: Case, there: Snapshot) -> Floats:
         far = np.linalg.norm(separation, axis=1) > 0.5 * size.min()
     if far.any():
         one = int(np.argmax(far))
-        raise CaseError(_too_long(there, one, separation[one], size))
+        first, second = there.numbers[there.bonds[one]]
+        raise CaseError(
+            f"the bond of particles {first} and {second} is {np.linalg.norm(separation[one]):.4g} "
+            f"long, more than half of the box {show(size.tolist())}; expected shorter bonds or a "
+            "larger box"
+        )
     return np.asarray(places)
-
-
-def _too_long(there: Snapshot, bond: int, separation: Floats, size: Floats) -> str:
-    first, second = there.numbers[there.bonds[bond]]
-    return (
-        f"the bond of particles {first} and {second} is {np.linalg.norm(separation):.4g} long, "
-        f"more than half of the box {show(size.tolist())}; expected shorter bonds or a larger box"
-    )

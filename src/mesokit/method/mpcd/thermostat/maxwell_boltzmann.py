@@ -35,9 +35,7 @@ class Canonical(NamedTuple):
     floor: float
 
 
-@guess.register(Canonical)
-def _(thermostat, chance, freedom):
-    return likely(chance[0], chance[1], freedom)
+guess.register(Canonical)(lambda thermostat, chance, freedom: likely(chance[0], chance[1], freedom))
 
 
 @draw.register(Canonical)
@@ -48,6 +46,4 @@ def _(thermostat, counter, cell, freedom, attempt):
     return decided(a, b, c, freedom)
 
 
-@target.register(Canonical)
-def _(thermostat, variate, freedom, energy):
-    return thermostat.kT * variate
+target.register(Canonical)(lambda thermostat, variate, freedom, energy: thermostat.kT * variate)

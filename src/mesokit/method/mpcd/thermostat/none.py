@@ -30,11 +30,7 @@ class NoRescaling(NamedTuple):
     kT: float
 
 
-@target.register(NoRescaling)
-def _(thermostat, variate, freedom, energy):
-    return energy
+target.register(NoRescaling)(lambda thermostat, variate, freedom, energy: energy)
 
 
-@stretch.register(NoRescaling)
-def _(thermostat, variate, freedom, energy):
-    return ()
+stretch.register(NoRescaling)(lambda thermostat, variate, freedom, energy: ())

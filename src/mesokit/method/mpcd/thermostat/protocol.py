@@ -1,4 +1,4 @@
-"""What a thermostat answers: the kinetic energy that the particles of a cell should have.
+"""Protocol of thermostats: the kinetic energy that the particles of a cell should have.
 
 Energies are those of the motion that a collision rule leaves free: relative to the cell's centre of
 mass, and for the rules +a to its rotation too. The first argument is the thermostat's NamedTuple of
@@ -21,10 +21,10 @@ class Thermostat(ABC):
     """What holds the temperature of the cells."""
 
     acts: ClassVar[bool] = True  # whether it holds the temperature
-    needs_energy: ClassVar[bool] = True  # whether `stretch` asks for the kinetic energy
+    needs_energy: ClassVar[bool] = True  # whether `stretch` needs the kinetic energy
     canonical: ClassVar[bool] = False  # whether it leaves the canonical distribution alone
     one_temperature: ClassVar[bool] = True  # of all kinds of particles in a mixture
-    in_theory: ClassVar[Named | None] = None  # the name by which `mesokit.theory` knows it
+    in_theory: ClassVar[Named | None] = None  # its name in `mesokit.theory`
 
     @abstractmethod
     def kernel(self, kT: float, floor: float) -> Any:
@@ -35,7 +35,7 @@ class Thermostat(ABC):
 def guess(thermostat, chance, freedom):
     """A random number for `target` from two random words, and whether it may surely be used.
 
-    Thermostats that say nothing use none.
+    Thermostats that register nothing use none.
     """
 
 

@@ -4,7 +4,8 @@ from pathlib import Path
 from typing import Literal
 
 from mesokit.case.case import Case
-from mesokit.case.component import FileName, component, param, show, tag
+from mesokit.case.component import component, param, show, tag
+from mesokit.case.given.file import FileName
 from mesokit.errors import CaseError
 from mesokit.io.snapshot_file import read_snapshot
 from mesokit.method.spheres.common.made import Made
