@@ -19,6 +19,7 @@ UNITS = {
     "position": "Angstrom",
     "velocity": "Angstrom ps-1",
     "spin": "ps-1",
+    "orientation": None,
     "edges": "Angstrom",
     "image": None,
 }
@@ -55,6 +56,7 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             _append(group, "position", now.position, now)
             _append(group, "velocity", now.velocity, now)
             _append(group, "spin", now.spin, now)
+            _append(group, "orientation", now.orientation, now)
             _append(group, "image", now.image, now)
         if "spin" in group:
             file["observables/trajectory/spin"] = group["spin"]
