@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
 
-Quantity = Literal["position", "velocity", "spin", "image", "site", "id"]
+Quantity = Literal["position", "velocity", "spin", "orientation", "image", "site", "id"]
 WIDTHS = {"image": 4, "site": 2, "id": 8}  # bytes of a field; the others follow the precision
 COMPRESSED = 0.9  # thermal noise hardly compresses
 
@@ -29,12 +29,13 @@ class Kind(NamedTuple):
 class Group(NamedTuple):
     """Particles with consecutive numbers, such as a fluid or its solutes, kind after kind.
 
-    `has` are quantities of each in an engine: those that trajectories may hold; "mass" and
-    "diameter" where each has its own; "heading" where the direction of a velocity at one time is
-    what pictures show. Sites of a lattice are a group that has "site", the number of the state of
-    each: `lattice` is how many there are along each axis, numbered along the last one first, and
-    `states` are the names of the states. `kT` is the thermal energy of velocities;
-    `picture` the kind of pictures that shows it unless another is chosen.
+    `has` are quantities of each in an engine: those that trajectories may hold, of which an
+    "orientation" is a unit quaternion (w, x, y, z); "mass" and "diameter" where each has its own;
+    "heading" where pictures show the direction of a velocity at one time. Sites of a lattice are a
+    group that has "site", the number of the state of each: `lattice` is how many there are along
+    each axis, numbered along the last one first, and `states` are the names of the states. `kT` is
+    the thermal energy of velocities; `picture` the kind of pictures that shows it unless another is
+    chosen.
     """
 
     name: str
@@ -124,14 +125,14 @@ def names_and_diameters(groups: Sequence[Group]) -> tuple[tuple[str, ...], NDArr
 
 
 def components(field: str, dimension: int) -> int:
-    """Number of components of a field of each particle: disks spin about one axis, spheres about 3.
+    """Number of components of a field of each particle: disks spin about one axis, spheres about 3,
+    an orientation is a unit quaternion.
 
     >>> [components(field, 2) for field in ("position", "spin", "id")], components("spin", 3)
     ([2, 1, 1], 3)
     """
-    if field == "spin":
-        return 1 if dimension == 2 else 3
-    return 1 if field in ("id", "site") else dimension
+    fixed = {"spin": 1 if dimension == 2 else 3, "orientation": 4, "id": 1, "site": 1}
+    return fixed.get(field, dimension)
 
 
 def stored_bytes(

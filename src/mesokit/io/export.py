@@ -172,7 +172,16 @@ def _moment(case: Case, frame: dict[str, Array]) -> Moment:
     spin = frame.get("spin")
     if spin is not None and spin.ndim == 1:  # disks spin about z
         spin = np.pad(spin[:, None], ((0, 0), (2, 0)))
-    return Moment(int(frame["step"]), time, float(tilt), position, velocity, image, spin)
+    return Moment(
+        int(frame["step"]),
+        time,
+        float(tilt),
+        position,
+        velocity,
+        image,
+        spin,
+        frame.get("orientation"),
+    )
 
 
 def _with_z(values: Array | None) -> Array | None:

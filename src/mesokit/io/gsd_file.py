@@ -127,6 +127,7 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             faces = np.where(now.tilt == 0.0, 0.5 * size, np.inf)  # x of a tilted face varies
             frame.particles.position = _rounded(now.position - middle, faces)
             frame.particles.velocity, frame.particles.image = now.velocity, now.image
+            frame.particles.orientation = now.orientation
             frame.log = {"time": np.array([now.time])}
             if now.spin is not None:
                 frame.log[SPIN.removeprefix("log/")] = now.spin

@@ -40,7 +40,8 @@ from mesokit.seam.method import method_of
 from mesokit.seam.result import Comparison, Result
 
 UNITS = {"position": "a", "velocity": "a/tau", "spin": "1/tau", "time": "tau", "radius": "a"}
-FIELDS = ("position", "velocity", "spin", "image", "site")
+FIELDS = ("position", "velocity", "spin", "orientation", "image", "site")
+WIDTHS: dict[str, tuple[int, ...]] = {"site": (), "orientation": (4,)}  # of the others (3,)
 DTYPES = {"image": np.int32, "site": np.int16}  # of the others by the precision of the trajectory
 CHUNK = 65536  # particles
 LARGE = 2**20  # numbers of one result, beyond which it is compressed
@@ -110,9 +111,9 @@ def own(path: str | Path) -> dict[str, NDArray[Any]]:
 
 
 def in_frames(data: Any, frames: Any, field: str, dimension: int) -> NDArray[Any]:
-    """A field in some frames. A site has one number, all other fields three columns in the file."""
+    """A field in some frames, with the columns that the dimension leaves out taken away."""
     found = np.asarray(data[frames])
-    return found if field == "site" else found[..., columns(field, dimension)]
+    return found if field in WIDTHS else found[..., columns(field, dimension)]
 
 
 def columns(field: str, dimension: int) -> Any:
@@ -197,7 +198,7 @@ def _particles(
     group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = units["time"]
     sets = {}
     for name in [name for name in kept.fields if name != "id"]:
-        deep = () if name == "site" else (3,)
+        deep = WIDTHS.get(name, (3,))
         packed: dict[str, Any] = {}
         if frames and n:
             packed = {"chunks": (1, min(n, CHUNK), *deep), "shuffle": bool(kept.compression)}
@@ -217,7 +218,7 @@ def _particles(
         for name, data in sets.items():
             for start in range(0, n, CHUNK):
                 part = frame[name][start : start + CHUNK]
-                if name != "site":
+                if name not in WIDTHS:
                     wide = np.zeros((len(part), 3), data.dtype)
                     wide[:, columns(name, case.box.dimension)] = part
                     part = wide

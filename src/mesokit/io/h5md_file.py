@@ -18,6 +18,7 @@ from mesokit.io.moments import Moment, Particles
 
 UNITS = {
     "position": "Angstrom", "velocity": "Angstrom ps-1", "spin": "ps-1", "edges": "Angstrom",
+    "orientation": None,
     "image": None,
 }  # fmt: skip
 
@@ -41,7 +42,7 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             edges = np.diag(particles.size)
             edges[1, 0] = now.tilt
             _append(box, "edges", edges, now)
-            for name in ("position", "velocity", "spin", "image"):
+            for name in ("position", "velocity", "spin", "orientation", "image"):
                 _append(group, name, getattr(now, name), now)
         if "spin" in group:
             file["observables/trajectory/spin"] = group["spin"]

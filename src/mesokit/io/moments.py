@@ -34,7 +34,7 @@ class Moment(NamedTuple):
 
     `position` (n, 3) in the cell spanned by (L_x, 0, 0), (tilt, L_y, 0) and (0, 0, L_z) from the
     origin on; `velocity`, `spin` (angular velocity) and `image` (n, 3), counts of these edges, or
-    None.
+    None; `orientation` (n, 4), unit quaternions w, x, y, z, or None.
     """
 
     step: int
@@ -44,3 +44,4 @@ class Moment(NamedTuple):
     velocity: Array | None
     image: Array | None
     spin: Array | None = None
+    orientation: Array | None = None

@@ -40,6 +40,7 @@ def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                 ("mass", FIGURES, particles.mass), *_vector("x y z", FIGURES, now.position),
                 *_vector("ix iy iz", "%d", now.image), *_vector("vx vy vz", FIGURES, now.velocity),
                 *_vector("omegax omegay omegaz", FIGURES, now.spin),
+                *_vector("quatw quati quatj quatk", FIGURES, now.orientation),
             ]  # fmt: skip
             file.write(f"ITEM: ATOMS {' '.join(name for name, _, _ in columns)}\n")
             _table(file, columns)
@@ -56,9 +57,12 @@ def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             lattice = " ".join(f"{number:.9g}" for number in edges.ravel())
             velocity = "" if now.velocity is None else ":velo:R:3"
             spin = "" if now.spin is None else ":angular_velocity:R:3"
+            turned, scalar_last = "", None  # the order in which OVITO reads quaternions from XYZ
+            if now.orientation is not None:
+                turned, scalar_last = ":orientation:R:4", np.roll(now.orientation, -1, axis=1)
             file.write(
                 f'{len(kinds)}\nLattice="{lattice}" '
-                f"Properties=species:S:1:pos:R:3:id:I:1:molecule:I:1:radius:R:1{velocity}{spin}"
+                f"Properties=species:S:1:pos:R:3:id:I:1:molecule:I:1:radius:R:1{velocity}{spin}{turned}"
                 f' Time={now.time:.9g} Step={now.step} pbc="{open_axes}"\n'
             )
             columns: list[tuple[str, str, Any]] = [
@@ -67,6 +71,7 @@ def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                 ("radius", FIGURES, 0.5 * particles.diameter),
                 *_vector("vx vy vz", FIGURES, now.velocity),
                 *_vector("wx wy wz", FIGURES, now.spin),
+                *_vector("qx qy qz qw", FIGURES, scalar_last),
             ]  # fmt: skip
             _table(file, columns)
 
@@ -100,7 +105,7 @@ def data_of_spheres(path: Path, particles: Particles, moments: Iterable[Moment])
 
 
 def _vector(names: str, form: str, values: Any) -> Iterator[tuple[str, str, Any]]:
-    """Three columns, or none."""
+    """A column for each name, or none."""
     for column, name in enumerate(names.split() if values is not None else ()):
         yield name, form, values[:, column]
 

@@ -60,6 +60,7 @@ class TrajectoryWriter:
             "position": lambda: _inside(of.positions(ids).astype(real), engine.box),
             "velocity": lambda: of.velocities(ids).astype(real),
             "spin": lambda: of.spins(ids).astype(real),
+            "orientation": lambda: of.orientations(ids).astype(real),
             "site": lambda: of.sites(ids).astype(np.int16),
             "image": lambda: of.images(ids).astype(np.int32),
         }
