@@ -80,7 +80,6 @@ ROWS = {
     "io/": ("case", "errors", "geometry", "io", "seam"),
     "report/": ("case", "errors", "geometry", "io", "observe", "report", "seam"),
     "report/flow/state.py": ("case", "seam"),
-    "report/flow/moving_plates.py": ("case", "method.spheres.common.walls", "report"),
     "report/flow/shaded.py": ("report", "kernels.kernel"),
     "run/": ("case", "errors", "io", "observe.shared", "processes", "report", "run", "seam"),
     "run/loop.py": ("case", "kernels.kept", "processes", "report", "run", "seam"),

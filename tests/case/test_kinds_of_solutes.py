@@ -194,7 +194,7 @@ def test_tables_of_kinds_are_kept_with_the_run(tmp_path):
     soft = Table.from_function(lambda r: 5 * (1 - r) ** 2, file, start=0.1, end=1.0)
     own = [Polymer(name=f"kind{k}", pair=soft) for k in range(2)]
     case = case_of(Solutes([*own, BALL], between=[Between([k, 3], soft) for k in (1, 2)]))
-    kept = METHOD.keep_files(case, tmp_path)
+    kept = METHOD.initial.kept(case, tmp_path)
     file.unlink()
     names = [p.pair.file for p in kept.solutes.polymers[:2]]
     names += [between.pair.file for between in kept.solutes.between]

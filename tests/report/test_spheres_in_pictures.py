@@ -18,11 +18,10 @@ from mesokit.method.spheres.common.kinds import SphereKind
 from mesokit.method.spheres.common.section import Spheres
 from mesokit.report.flow import KINDS, animate, disks, picture
 from mesokit.report.flow.colouring import COLOURS, MOST, in_film
-from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.shaded import DARK, SHADE, Balls, shaded
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import sources
-from mesokit.seam.method import Enclosure
+from mesokit.seam.method import Enclosure, method_of
 from tests.helpers.flying_spheres import METHOD
 
 TWO = (SphereKind(0.8, share=2.0, name="small"), SphereKind(1.2, spread=0.3, name="large"))
@@ -452,5 +451,5 @@ def test_plates_that_vibrate_are_drawn_where_they_are():
     section, x = Section(case, ("x", "y")), np.full(5, 3.0)
     y = np.array([-0.6, -0.2, 0.2, 0.6, 9.0])
     for time, shift in ((0.0, 0.0), (np.pi / 4, 0.5), (3 * np.pi / 4, -0.5)):
-        found = section.distance(x, y, plates_at(case, time))
+        found = section.distance(x, y, method_of(case).enclosure.moving_plates(case, time))
         np.testing.assert_allclose(found, [*(y[:4] - shift), 1.0], atol=1e-12)

@@ -81,7 +81,7 @@ class RunDirectory:
             reason = (error.strerror or str(error)).lower()
             raise RunError(f"{path}: cannot make the folder: {reason}") from None
         try:
-            kept = method_of(case).keep_files(case, run.path)
+            kept = method_of(case).initial.kept(case, run.path)
             write_text(run.case_file, kept.to_toml(run.path))
         except BaseException:  # a folder with files but no case would refuse the next try
             for left in run.files_of_parts():

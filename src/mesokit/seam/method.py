@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 E = TypeVar("E")  # engine of a method
 S = TypeVar("S")  # state that it starts from
+Floats = NDArray[np.floating]
 Row = tuple[str, str, str]  # what, its value, and a word on it
 
 
@@ -92,7 +93,8 @@ class InitialState(NamedTuple, Generic[E, S]):
     returns goes to `fill`, which puts it into an engine. arrays: names of those that a `Simulation`
     may be started from. files: the files and folders of runs that a case starts from, by their
     keys. run: the key by which a case starts from where another run ended. prepared: the case with
-    keys that follow from the state it starts from; raises CaseError.
+    keys that follow from the state it starts from; raises CaseError. kept: of a case and the folder
+    of its run, the case with copies in that folder of the files that it was made from.
     """
 
     read: Callable[[Case, Mapping[str, object]], S]
@@ -101,6 +103,7 @@ class InitialState(NamedTuple, Generic[E, S]):
     files: Callable[[Case], Mapping[str, Path]] = lambda case: {}
     run: str = ""
     prepared: Callable[[Case, Mapping[str, object]], Case] = lambda case, arrays: case
+    kept: Callable[[Case, Path], Case] = lambda case, folder: case
 
     def missing(self, case: Case) -> list[str]:
         """A line for each file or folder that is not there."""
@@ -111,15 +114,43 @@ class InitialState(NamedTuple, Generic[E, S]):
         ]
 
 
+class Plate(NamedTuple):
+    """A plate that moves: a point of it at rest, its normal, and its displacement along this."""
+
+    point: Floats
+    normal: Floats
+    shift: float
+
+    def moved(self, points: Floats, distance: Floats) -> Floats:
+        """Distances (n,) of points (n, d) from all surfaces, from those with this plate at rest."""
+        rest = (points - self.point) @ self.normal
+        nearest = np.isclose(distance, rest, rtol=0, atol=1e-9)
+        return np.where(nearest, rest - self.shift, np.minimum(distance, rest - self.shift))
+
+
+class Steadiness(NamedTuple):
+    """How far a run measures a steady state, as functions of a case.
+
+    build_up: how its flow comes from rest to its steady state, or None. heat_caveat: of the number
+    of steps too, warm-up included: the caveat of numbers that depend on the temperature, where so
+    many steps heat the particles far above that of theory; "" elsewhere.
+    """
+
+    build_up: Callable[[Case], BuildUp | None] = lambda case: None
+    heat_caveat: Callable[[Case, int], str] = lambda case, steps: ""
+
+
 class Enclosure(NamedTuple):
-    """Enclosure of particles: numbers of the axes that are not periodic, and the solids that
-    pictures show (`mesokit.geometry.solids.solids.Solids`) or None, both of a case."""
+    """Enclosure of particles, as functions of a case: numbers of the axes that are not periodic,
+    the solids that pictures show (`mesokit.geometry.solids.solids.Solids`) or None, and the plates
+    that are not where they are at rest at a time."""
 
     closed_axes: Callable[[Case], set[int]] = lambda case: set()
     solids: Callable[[Case], Solids | None] = lambda case: None
+    moving_plates: Callable[[Case, float], tuple[Plate, ...]] = lambda case, time: ()
 
 
-NOT_ENCLOSED = Enclosure()
+NOT_ENCLOSED, STEADY = Enclosure(), Steadiness()
 
 
 class InSI(Protocol):
@@ -166,17 +197,12 @@ class Method:
         What shuts its particles in.
     bonds : function of a case, optional
         Pairs (bonds, 2) of the numbers of particles that are bonded.
-    keep_files : function of a case and the folder of its run, optional
-        The case, with copies in that folder of the files that it was made from.
     log : function of a case, optional
         The columns of the log of its run.
     si : function of a case, optional
         What its units are in SI; without it, a case must not have the section `[units]`.
-    build_up : function of a case, optional
-        How its flow comes from rest to its steady state (`BuildUp`), or None.
-    heat_caveat : function of a case and a number of steps, warm-up included, optional
-        The caveat of numbers that depend on the temperature, where so many steps heat the
-        particles far above that of theory; "" elsewhere.
+    steadiness : Steadiness, optional
+        How far a run measures a steady state.
     units : Units, optional
         What lengths, times and masses are counted in; unless said, the unit of the case.
     check_ranks : function of a case and a number of ranks, optional
@@ -198,11 +224,9 @@ class Method:
     expected: Mapping[str, Callable[[Case, Observable], Any]] = field(default_factory=dict)
     enclosure: Enclosure = NOT_ENCLOSED
     bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
-    keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
     log: Callable[[Case], Columns[Any]] = lambda case: NO_COLUMNS
     si: Callable[[Case], InSI] | None = None
-    build_up: Callable[[Case], BuildUp | None] | None = None
-    heat_caveat: Callable[[Case, int], str] = lambda case, steps: ""
+    steadiness: Steadiness = STEADY
     units: Units = Units()  # noqa: RUF009  a tuple of names
     check_ranks: Callable[[Case, int], None] | None = None
 

@@ -37,7 +37,7 @@ from mesokit.method.mpcd.si import convert
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.processes.world import world
 from mesokit.seam.engine import Engine
-from mesokit.seam.method import Enclosure, InitialState, Method
+from mesokit.seam.method import Enclosure, InitialState, Method, Steadiness
 from mesokit.seam.units import CELLS
 
 if TYPE_CHECKING:
@@ -141,9 +141,10 @@ METHOD = Method(
     enclosure=Enclosure(lambda c: closed_axes(c) | {AXES.index(a) for a in c.box.open}, solids),
     timestep=lambda case: float(case.fluid.timestep),
     summary=summary,
-    initial=InitialState(_first_state, _start, ARRAYS, _starts, "fluid.start.run"),
+    initial=InitialState(
+        _first_state, _start, ARRAYS, _starts, "fluid.start.run", kept=_keep_files
+    ),
     engine=_engine,
-    keep_files=_keep_files,
     expected={
         theory.answers: theory
         for theory in (
@@ -158,8 +159,7 @@ METHOD = Method(
     },
     log=columns,
     si=convert,
-    build_up=build_up,
-    heat_caveat=heat_caveat,
+    steadiness=Steadiness(build_up, heat_caveat),
     units=CELLS,
     check_ranks=_check_ranks,
 )

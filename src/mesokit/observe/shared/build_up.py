@@ -40,7 +40,7 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
         drift = "" if early or short else _drift(accumulator, result)
         result = _marked(_marked(result, early, observable.in_any_flow), drift)
     steps = case.run.warmup + min(length, case.run.steps)
-    heat = method_of(case).heat_caveat(case, steps)
+    heat = method_of(case).steadiness.heat_caveat(case, steps)
     return _marked(result, heat, observable.at_any_kT)
 
 
@@ -69,8 +69,8 @@ def _has(comparison: Comparison, words: tuple[str, ...]) -> bool:
 def _build_up(accumulator: Accumulator, case: Case) -> tuple[BuildUp | None, bool]:
     """How the flow came from rest, None where that is unknown, and whether that is an estimate from
     the flow itself: the method `build_up` of an accumulator."""
-    method, of_flow = method_of(case), getattr(accumulator, "build_up", None)
-    known = method.build_up(case) if method.build_up is not None else None
+    known = method_of(case).steadiness.build_up(case)
+    of_flow = getattr(accumulator, "build_up", None)
     if known is None and of_flow is not None:
         return of_flow(), True
     return known, False

@@ -18,7 +18,7 @@ from mesokit.seam.method import method_of
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.geometry.solids.solids import Solids
-    from mesokit.report.flow.moving_plates import Plate
+    from mesokit.seam.method import Plate
 
 POINTS = 600  # along the longer side of a picture
 BEYOND = 0.02, 0.08  # of the longer and the shorter side: the strip of a plate that is shown

@@ -14,7 +14,6 @@ from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.caption import in_cells
 from mesokit.report.flow.colouring import Frame, chosen
 from mesokit.report.flow.data import Array, Flow, Spheres
-from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.region import View
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.state import State
@@ -63,7 +62,7 @@ class SphereSource:
             scale=functools.partial(colouring.scale, self.case) if colouring else None,
             repeats=self._repeats(float(self.time[frame])),
             time=float(self.time[frame]),
-            plates=plates_at(self.case, float(self.time[frame])),
+            plates=method_of(self.case).enclosure.moving_plates(self.case, float(self.time[frame])),
             tells=colouring.tells(now) if colouring else "",
         )
         if box.dimension == 3:

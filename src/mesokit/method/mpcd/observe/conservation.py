@@ -165,8 +165,7 @@ class ConservationAccumulator(BlockAccumulator):
 
     def _not_steady(self) -> str:
         """That samples began before the flow had built up, nothing where they did not."""
-        method = method_of(self.case)
-        found = method.build_up(self.case) if method.build_up is not None else None
+        found = method_of(self.case).steadiness.build_up(self.case)
         if found is None or found.had >= found.need:
             return ""
         return f"{NOT_STEADY}: the flow needs {found.need} steps before samples, had {found.had}"

@@ -17,6 +17,7 @@ from mesokit.loops.neighbours import nearest_image
 from mesokit.scalar.jit import elementwise, scalar
 from mesokit.scalar.vector import added_scaled, dot, scaled
 from mesokit.seam.engine import Array
+from mesokit.seam.method import Plate
 
 # columns: kind, place of three, unit vector of three (normal of a plane, axis of a cylinder),
 # radius, velocity of three, amplitude, frequency, phase at the start of the window
@@ -120,6 +121,15 @@ def surface_rows(case: Case, without: Sequence[int] = ()) -> SurfaceRows:
         surfaces,
         np.array(body_of, np.int64),
         tuple(names),
+    )
+
+
+def moving_plates(case: Case, time: float) -> tuple[Plate, ...]:
+    """Plates that vibrate, displaced as at a time."""
+    rows, d = surface_rows(case, other_walls(case)).rows, case.box.dimension
+    return tuple(
+        Plate(rows[w, PLACE : PLACE + d], rows[w, AXIS : AXIS + d], vibration(rows, w, time)[0])
+        for w in np.flatnonzero(rows[:, AMPLITUDE] > 0)
     )
 
 
