@@ -1,9 +1,9 @@
-"""What every part of a case is made of: a frozen dataclass that checks its values.
+"""Base of every part of a case: a frozen dataclass that checks its values.
 
 A component is at once the Python object, the section of the case file, the stored metadata and
 the row of the documentation. Write plain type hints: numbers are taken strictly (no strings, no
 booleans; a whole float passes as an int), lists and arrays become tuples, unions of components
-are told apart by their tag (such as `rule` or `quantity`), unknown keys are refused.
+are distinguished by their tag (such as `rule` or `quantity`), unknown keys are refused.
 """
 
 import contextlib

@@ -55,7 +55,7 @@ class Run:
 class Log:
     """Numbers in time: a line on the screen and in the file `log.csv` of the run's folder.
 
-    Beside what the method knows, such as `temperature` and `velocity x`, a column may be what an
+    Beside those of the method, such as `temperature` and `velocity x`, a column may be what an
     observable has found so far, as `velocity-profile.viscosity`; its error is a column of its own.
     """
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Properties(NamedTuple):
-    """What the numbers of a fluid are made of, in any one system of units; nan where unknown."""
+    """Properties that give the numbers of a fluid, in any one system of units; nan: unknown."""
 
     density: float
     dynamic_viscosity: float

@@ -69,7 +69,7 @@ class OtherFluid:
 
 @component
 class Units:
-    """What the units of a case are in SI.
+    """Units of a case in SI.
 
     The cell gives the unit of length. Two properties that become those of the real fluid give the
     units of mass and time: "reynolds" mass density and viscosity (flow with inertia), "peclet"

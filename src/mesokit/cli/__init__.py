@@ -25,7 +25,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt as stop:
         print("mesokit: interrupted", file=sys.stderr)
         status = getattr(stop, "status", 130)
-    with contextlib.suppress(OSError):  # a full disk, told where it can be: in the run's folder
+    with contextlib.suppress(OSError):  # a full disk, reported where it can be: in the run's folder
         sys.stderr.flush()
     raise SystemExit(status)
 

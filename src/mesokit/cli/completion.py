@@ -1,4 +1,4 @@
-"""What the shell offers when TAB is pressed: pictures, templates, and keys of the case."""
+"""Completions of the shell: pictures, templates, and keys of the case."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -21,7 +21,7 @@ def kinds(context: click.Context, option: click.Parameter, text: str) -> list[Co
 
 
 def colours(context: click.Context, option: click.Parameter, text: str) -> list[CompletionItem]:
-    """What colours of disks and spheres may mean."""
+    """Quantities that colours of disks and spheres may show."""
     from mesokit.report.flow.colouring import COLOURS
 
     return beginning(text, COLOURS)

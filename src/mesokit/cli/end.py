@@ -54,7 +54,7 @@ def _carried_out(arguments: list[str]) -> int:
         near = error.object[max(error.start - 60, 0) : error.end]
         return _failed(f"...{near!r}: a name that is not {error.encoding} text", 2)
     except MemoryError:
-        return _failed("not enough memory for this case (mesokit check tells what it needs)", 1)
+        return _failed("not enough memory for this case (mesokit check says what it needs)", 1)
     except Exception as error:
         frames = frames_of_parts(error)
         if not frames:  # an error of mesokit itself: the whole traceback is shown

@@ -30,7 +30,7 @@ SCHEMA = "case.schema.json"
     help="Write a commented case NAME.toml: "
     f"{', '.join(TEMPLATES)}, or one of the examples: {_listed(EXAMPLES)}.\n\n"
     f"Or the file of a study, and its case beside it: {', '.join(STUDIES)}.\n\n"
-    "With a FILE, that is what is written (or give another NAME and its --template). Beside it "
+    "With a FILE it is written there; or give another NAME and its --template. Beside it "
     "comes "
     f"{SCHEMA}, by which editors complete and check all cases of the folder."
 )

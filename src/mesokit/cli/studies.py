@@ -164,7 +164,7 @@ def draw_number(made: Any, given: Mapping[str, Any], **look: Any) -> Path:
 
 
 def first_key(made: Any) -> str:
-    """What a number is drawn against unless said. Raises CaseError where nothing is varied."""
+    """Key against which a number is drawn unless said. Raises CaseError where nothing is varied."""
     if not made.keys:
         raise CaseError("--y: nothing is varied that it could be drawn against")
     return str(made.keys[0])

@@ -1,1 +1,1 @@
-"""Files: the only place that knows HDF5."""
+"""Files: the only place that uses HDF5."""

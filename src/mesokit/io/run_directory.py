@@ -129,7 +129,7 @@ class RunDirectory:
     def require_parts(self) -> None:
         """Raise RunError if the case has a part from outside mesokit that is not here."""
         record: dict[str, Any] = {}
-        with contextlib.suppress(RunError):  # a damaged record is told elsewhere
+        with contextlib.suppress(RunError):  # a damaged record is reported elsewhere
             record = self.read_provenance()
         try:
             require_parts(record.get("parts"))
@@ -137,7 +137,7 @@ class RunDirectory:
             raise RunError(f"{self.path}: {error}") from None
 
     def read_provenance(self) -> dict[str, Any]:
-        """What `write_provenance` wrote, {} if nothing. Raises RunError if it is damaged."""
+        """The record of `write_provenance`, {} if there is none. Raises RunError if damaged."""
         try:
             record = json.loads(self.provenance_file.read_text(encoding="utf-8"))
         except FileNotFoundError:

@@ -69,7 +69,7 @@ def _compile(compile: Callable[[], Any], reported: int) -> None:
         with os.fdopen(reported, "wb") as pipe:
             pickle.dump(counts, pipe)
     finally:
-        os._exit(0)  # nothing of what the parent has open is flushed, or told that it ends
+        os._exit(0)  # nothing that the parent has open is flushed or closed
 
 
 def end(kernel: Any) -> None:
@@ -77,15 +77,15 @@ def end(kernel: Any) -> None:
     if kernel not in _in_progress:
         return
     child, report = _in_progress.pop(kernel)
-    told = b""
+    counted = b""
     try:
         with os.fdopen(report, "rb") as pipe:
             if select.select([pipe], [], [], PATIENCE)[0]:
-                told = pipe.read()
+                counted = pipe.read()
     finally:
         _stop(child)
-    if told:
-        counts.add_made(pickle.loads(told))
+    if counted:
+        counts.add_made(pickle.loads(counted))
 
 
 def _stop(child: int) -> None:

@@ -28,7 +28,7 @@ HERE = Path(__file__).parent
 
 
 class Counts:
-    """What this process has made and found, and why it was made."""
+    """Counts of what this process has made and found, and why it was made."""
 
     def __init__(self, explains: bool = False) -> None:
         self.parts_made = self.stages_made = self.kernels_made = 0
@@ -119,7 +119,7 @@ class Kept:
 
     @contextlib.contextmanager
     def _reading(self, store: Store) -> Iterator[None]:
-        """What is wrong in a store is as if it were not there."""
+        """Treat a damaged store as an empty one."""
         if store is self.own:
             with self._without_own():
                 yield

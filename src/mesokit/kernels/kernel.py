@@ -95,7 +95,7 @@ class _Kernel(CPUDispatcher):
     def compile_ahead(self, *arguments: Any) -> None:
         """Compile for arguments like these on another core, if that is needed and can be done."""
         given = tuple(map(typeof, all_packed(arguments)))
-        if given not in self.overloads and not self._cache.knows(given):
+        if given not in self.overloads and not self._cache.has(given):
             ahead.begin(self, lambda: self.compile(given))
 
     def compile(self, sig: Any) -> Any:
@@ -110,7 +110,7 @@ class _Kernel(CPUDispatcher):
 
 
 class _MachineCode:
-    """What numba calls a cache: machine code of one kernel, for each signature."""
+    """Cache of numba: machine code of one kernel, for each signature."""
 
     cache_path = ""
 
@@ -132,7 +132,7 @@ class _MachineCode:
             counts.kernels_found += 1
         return found
 
-    def knows(self, signature: Any) -> bool:
+    def has(self, signature: Any) -> bool:
         """Whether the kernel for these types is kept."""
         key = self._key(signature)
         return key is not None and kept().find(key) is not None
@@ -163,9 +163,9 @@ class _MachineCode:
         every = itertools.chain(module.functions, module.global_variables)
         names = [one.name for one in every if not one.is_declaration]
         others = compiled._find_referenced_environments()
-        told = compiled.fndesc, compiled.environment, compiled.signature, names, others, stages
+        record = compiled.fndesc, compiled.environment, compiled.signature, names, others, stages
         code = Code(library.name, (), library._get_compiled_object())
-        entry = Entry(name, below, as_bytes(told), code.hash)
+        entry = Entry(name, below, as_bytes(record), code.hash)
         kept().keep(key, lambda store: (entry, [code]))
 
     def flush(self) -> None:
@@ -175,10 +175,10 @@ class _MachineCode:
         place = f"{self.function.__module__}:{self.function.__qualname__}"
         try:
             given = [describe_type(kind) for kind in getattr(signature, "args", signature)]
-            told = code_of(self.function), place, given, processor(), versions()
+            record = code_of(self.function), place, given, processor(), versions()
         except Unknown:
             return None
-        return digest(repr(("kernel", *told)))
+        return digest(repr(("kernel", *record)))
 
     def _found(self, key: str) -> Any:
         hit = kept().find(key)

@@ -1,4 +1,4 @@
-"""What numba makes of functions, made when it is first used: to read a case takes no compiler."""
+"""Compiled functions, made when first used: to read a case takes no compiler."""
 
 import functools
 import sys
@@ -25,7 +25,7 @@ class Later:
 
     @property
     def made(self) -> Any:
-        """What numba knows; made once, also where two threads ask at a time."""
+        """The function compiled by numba; made once, also for two threads at a time."""
         if self._made is None:
             with _making:
                 self._made = self._made or self._make()

@@ -20,7 +20,7 @@ from mesokit.kernels.store import Code, Entry, Store
 
 
 def processor() -> str:
-    """What machine code is made for."""
+    """Processor for which machine code is made."""
     return digest(str(cpu_target.target_context.codegen().magic_tuple()))
 
 
@@ -68,7 +68,7 @@ STAGE = "stage "  # how names of their libraries begin
 class StageLibrary(PartLibrary):
     """The code of a stage, and its machine code."""
 
-    _ready: Any = None  # what numba knows its machine code by
+    _ready: Any = None  # name of its machine code in numba
 
     def make_ready(self) -> None:
         """Have its machine code in this process."""
@@ -91,9 +91,9 @@ class StageLibrary(PartLibrary):
         hashes = [stage.hash for stage in below]
         if self.hash is not None and None not in hashes:
             _ready[self.hash] = made
-            told = pickle.dumps((_defined(made._final_module), hashes))
+            record = pickle.dumps((_defined(made._final_module), hashes))
             code = Code(self.name, (), made._get_compiled_object())
-            entry = Entry(f"kernel {self.name}", frozenset(), told, code.hash)
+            entry = Entry(f"kernel {self.name}", frozenset(), record, code.hash)
             kept().keep(_key_of_stage(self.hash), lambda store: (entry, [code]))
         return made
 
@@ -169,8 +169,8 @@ def stages_of(library: Any) -> list[Any]:
 
 
 def _called_by(library: Any) -> list[Any]:
-    """What a part calls, what that calls, and so on: each once, and after all that call it, as LLVM
-    leaves out what nothing has named yet."""
+    """Parts that a part calls, that these call, and so on: each once, and after all that call
+    it, as LLVM leaves out what nothing has named yet."""
     order: dict[Any, None] = {}
 
     def visit(library: Any) -> None:

@@ -1,4 +1,4 @@
-"""What compiled code is made of, in words that are the same in every process.
+"""Description of the sources of compiled code, in words that are the same in every process.
 
 A compiled function is known by its own code, the values that are frozen into it, and the types of
 its arguments. What it uses beside that are its needs: lines that name a function and hold a hash of
@@ -108,7 +108,7 @@ def code_of(function: Any) -> str:
 
 
 def _function(function: Any, within: tuple) -> str:
-    """The code of a function and all that it names; `within`: functions that are being told."""
+    """The code of a function and all that it names; `within`: functions in hand."""
     if function in within:
         return f"function {within.index(function)} again"
     within, code = (*within, function), function.__code__
@@ -126,7 +126,7 @@ def _function(function: Any, within: tuple) -> str:
 def describe(value: Any, within: tuple = (), parts: Iterable[str] = ()) -> str:
     """A text for a value that compiled code, or what chooses it, may depend on. Raises Unknown.
 
-    Compiled functions are named, for they are needs of their own; other functions are told in
+    Compiled functions are named, for they are needs of their own; other functions are described in
     full. `parts`: names that may be looked up in a module.
     """
     if value is None or isinstance(value, (bool, int, float, complex, str, bytes)):
@@ -150,15 +150,15 @@ def describe(value: Any, within: tuple = (), parts: Iterable[str] = ()) -> str:
         return f"dict {sorted(items)}"
     if isinstance(value, python_types.ModuleType):
         taken = _taken(value, parts).items()
-        told = {name: describe(one, within, parts) for name, one in taken}
-        return f"module {value.__name__} {told}"
+        described = {name: describe(one, within, parts) for name, one in taken}
+        return f"module {value.__name__} {described}"
     if isinstance(value, type):
         return _class(value)
     return _callable(value, within)
 
 
 def _taken(module: Any, parts: Iterable[str]) -> dict[str, Any]:
-    """What may be looked up in a module whose version is in no key, by name."""
+    """Names in a module whose version is in no key that may be looked up."""
     if module.__name__.split(".")[0] in KNOWN:
         return {}
     return {name: vars(module)[name] for name in sorted(parts) if name in vars(module)}
@@ -241,8 +241,8 @@ def _describe_type(kind: Any) -> str:
 def needs_of(function: Any) -> Iterator[str]:
     """Lines for `holds`: what must stay as it is for code that contains a function.
 
-    A function that has no place of its own was made by another, which tells its code; what it
-    names in a module is told here. Raises Unknown.
+    A function that has no place of its own was made by another, which has its code; what it
+    names in a module is described here. Raises Unknown.
     """
     try:
         yield f"function {place_of(function)} {code_of(function)}"
@@ -290,7 +290,7 @@ def still_holds(need: str) -> bool:
 
 
 def named(need: str) -> str:
-    """What a line is about, for people."""
+    """The subject of a line, in words."""
     what, place, _, *more = need.split(" ")
     if what != "choice" or len(more) < 2:
         return place

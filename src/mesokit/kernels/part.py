@@ -58,7 +58,7 @@ def _identified(cls: type, function: Any) -> Any:
     """Numba's name of a function, with a number that depends on what is compiled.
 
     Numba counts the functions of a process: two of two processes could have one name, and be linked
-    in place of each other. A part has the number of its key, which tells its code and types; what
+    in place of each other. A part has the number of its key, which names its code and types; what
     numba compiles for it has one made of that key and its own name.
     """
     made = _identity(function)
@@ -157,10 +157,17 @@ class PartCompiler(Compiler):
         try:
             given = [describe_type(kind) for kind in state.args]
             answer = "" if state.return_type is None else describe_type(state.return_type)
-            told = code_of(function), given, answer, str(state.flags), str(state.locals), versions()
+            record = (
+                code_of(function),
+                given,
+                answer,
+                str(state.flags),
+                str(state.locals),
+                versions(),
+            )
         except Unknown:
             return None
-        return digest(repr((self.lowering._name, *told)))
+        return digest(repr((self.lowering._name, *record)))
 
 
 class StageCompiler(PartCompiler):
@@ -203,13 +210,13 @@ def result_of(library: Any, fndesc: Any, signature: Any, entry: Any, environment
     )
 
 
-def as_bytes(told: Any) -> bytes:
+def as_bytes(record: Any) -> bytes:
     """Pickle what numba needs to load compiled code. Classes are named, and not copied: those of
     a script that is run again are the same."""
     try:
-        return pickle.dumps(told)
+        return pickle.dumps(record)
     except Exception:  # something that has no name
-        return dumps(told)
+        return dumps(record)
 
 
 def _keep(key: str, function: Any, made: Any) -> None:

@@ -48,7 +48,7 @@ class Entry(NamedTuple):
 
     name: str
     needs: frozenset[str]
-    about: bytes  # what numba must be told of it
+    about: bytes  # its description for numba
     code: str  # hash of its code
 
 
@@ -155,13 +155,13 @@ class Store:
             yield Entry(name, self._read_needs(needs), about, code)
 
     def _read_needs(self, numbers: bytes) -> frozenset[str]:
-        asked = memoryview(numbers).cast("I")
-        unknown = [number for number in asked if number not in self._lines]
+        wanted = memoryview(numbers).cast("I")
+        unknown = [number for number in wanted if number not in self._lines]
         for start in range(0, len(unknown), 500):
             some = unknown[start : start + 500]
             rows = f"SELECT id, line FROM needs WHERE id IN ({','.join('?' * len(some))})"
             self._lines.update(self._disk.execute(rows, some).fetchall())
-        return frozenset(self._lines.get(number, "function lost:lost lost") for number in asked)
+        return frozenset(self._lines.get(number, "function lost:lost lost") for number in wanted)
 
     def code(self, hash: str) -> Code | None:
         """The code of this hash; None if it is not here. Raises sqlite3.Error."""

@@ -255,7 +255,7 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         elif np.isfinite(theory.level_from()) and len(steps) > 1:
             begin = math.ceil(theory.level_from() / self.timestep)
             note = (
-                f"theory knows the level, from lag {begin} steps on; the longest here is "
+                f"theory gives the level, from lag {begin} steps on; the longest here is "
                 f"{steps[-1]}: a larger max_lag"
             )
             last, what = np.eye(len(steps))[-1], "mean square displacement at the longest lag"

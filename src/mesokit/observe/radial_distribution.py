@@ -78,8 +78,8 @@ class RadialDistribution(OfMethod):
     """Pairs at a distance r over those of as many independent particles, in a periodic box.
 
     Of a fluid some particles are looked at, which changes the error bars and not the mean; of
-    solutes all beads, and of other methods all spheres. Of equal hard spheres g at contact is told,
-    by shells just beyond it.
+    solutes all beads, and of other methods all spheres. g at contact of equal hard spheres is
+    extrapolated from shells just beyond it.
     """
 
     quantity: Literal["radial-distribution"] = tag("radial-distribution")
@@ -186,7 +186,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         return between if self.observable.pairs == "between" else within + between
 
     def counts(self, fluid: RunningFluid, edges: Array) -> Array:
-        """Pairs (bins,) of all between distances, as far as the sample knows."""
+        """Pairs (bins,) of all between distances, as far as the sample reaches."""
         places = self.places(fluid, self.first, self.beads)
         one = np.concatenate(places)
         if self.second:

@@ -39,7 +39,7 @@ class VelocityMemory(Protocol):
 
     def level(self, error: float, runs: int) -> tuple[float, float] | None:
         """The value at lag 0, nan if it is not known, and the error of the measured one over so
-        many runs with what their starts add to it; None if it is not told."""
+        many runs with what their starts add to it; None if it is not given."""
         return math.nan, error
 
     def with_start(self, error: float, value: float, runs: int) -> float:
@@ -52,7 +52,7 @@ class VelocityMemory(Protocol):
 
     def diffusion(self, every: int) -> tuple[float, str] | None:
         """The diffusion coefficient that the integral is, and what to say of it; None if it is
-        not told."""
+        not given."""
         return math.nan, ""
 
     def tail(self, time: Array) -> Array | None:

@@ -17,7 +17,7 @@ from mesokit.scalar.jit import generic
 @family("bond", "rule", "mesokit.potential")
 @component
 class Bond(ABC):
-    """What links two beads: `central` and `breaks` below."""
+    """Potential of a bond between two beads: `central` and `breaks` below."""
 
     @property
     @abstractmethod
@@ -38,7 +38,7 @@ class Bond(ABC):
 )
 @component
 class Pair(ABC):
-    """What acts between any two beads, or a bead and a wall: `central` below."""
+    """Potential between any two beads, or a bead and a wall: `central` below."""
 
     @property
     @abstractmethod
@@ -62,7 +62,7 @@ class Pair(ABC):
 @family("angle potential", "rule", "mesokit.potential")
 @component
 class Angle(ABC):
-    """What acts on two bonds in a row: `angular` below."""
+    """Potential of the angle between two bonds in a row: `angular` below."""
 
     @property
     @abstractmethod

@@ -1,7 +1,7 @@
 """Potentials that differ from link to link: which one acts, compiled code reads from tables.
 
 Potentials of one class differ in numbers only: those lie in a table, a row for each, and code is
-compiled once for the class however many there are. Several classes are asked one after the other.
+compiled once for the class however many there are. Several classes are tried one after the other.
 """
 
 import hashlib

@@ -167,7 +167,7 @@ class Table(FromContents, Pair):
 
     @functools.cached_property
     def rows(self) -> Floats:
-        """What the file holds: r, U and maybe F. Raises CaseError."""
+        """Content of the file: r, U and maybe F. Raises CaseError."""
         try:
             return rows_of(self.contents.decode(), self.section)
         except ValueError as error:

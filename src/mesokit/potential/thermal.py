@@ -1,4 +1,4 @@
-"""What the temperature makes of a bond: how long it is, and how stiff where it goes."""
+"""Length of a bond at a temperature, and its stiffness there."""
 
 import functools
 from collections.abc import Sequence

@@ -20,7 +20,7 @@ Coming = Callable[[], Order]  # waits for an order
 
 
 class Alone:
-    """One process, which decides and writes.
+    """One process without others.
 
     >>> Alone().on_root(lambda: 5), Alone().gathered(5)
     (5, [5])

@@ -64,16 +64,16 @@ def start(ranks: int, arguments: Sequence[str]) -> End:
             errors="replace",
             start_new_session=True,  # Ctrl-C comes to this process alone
         )
-        asked: list[signal.Signals] = []
+        received: list[signal.Signals] = []
 
         def stop(by: signal.Signals) -> None:
             first = parent.number(folder / "rank-0")
-            if asked or first is None:
+            if received or first is None:
                 process.terminate()
             else:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(first, by)
-            asked.append(by)
+            received.append(by)
 
         with catching(stop):
             said = _pass_on(process)
@@ -83,8 +83,8 @@ def start(ranks: int, arguments: Sequence[str]) -> End:
             return End(ended, "")
         if sys.stderr.isatty():
             print(CURSOR, end="", file=sys.stderr)
-        if asked:
-            return End(128 + asked[0], f"stopped by {asked[0].name}")
+        if received:
+            return End(128 + received[0], f"stopped by {received[0].name}")
         return _what_is_known(folder, said, status)
 
 

@@ -84,7 +84,7 @@ class Several(Alone):
             self._warned = True
             print(
                 f"warning: rank {self.rank} has waited {LONG:g} seconds for callbacks of other "
-                "ranks; what one asks of the fluid, those of all ranks must ask",
+                "ranks; what one reads of the fluid, those of all ranks must read",
                 file=sys.stderr,
             )
 

@@ -1,4 +1,4 @@
-"""Signals that end a run at a checkpoint, and the exit status that tells which."""
+"""Signals that end a run at a checkpoint, and the exit status of each."""
 
 import contextlib
 import signal
@@ -26,13 +26,13 @@ _caught: list[int] = []  # signals since `catching` began
 
 
 def heard() -> bool:
-    """True if a signal has asked this thread to end, which only the main thread is asked to."""
+    """True if a signal has requested the end of this thread, which can only be the main thread."""
     return bool(_caught) and threading.current_thread() is threading.main_thread()
 
 
 @contextlib.contextmanager
 def catching(stop: Callable[[signal.Signals], None]) -> Iterator[None]:
-    """Call `stop` when a signal asks to end; what happened before, happens again afterwards.
+    """Call `stop` at a signal that ends the run; earlier handlers are set again afterwards.
 
     Only the main thread can do so. A closed terminal is no reason under `nohup`, which ignores it.
     """

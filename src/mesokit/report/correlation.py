@@ -12,7 +12,7 @@ from mesokit.seam.result import Result
 from mesokit.seam.units import Units
 
 SHOWN = 6  # curves in one figure
-ALIKE = 0.01  # how near a line is to a curve that tells the same
+ALIKE = 0.01  # how near a line is to a curve that shows the same
 DEEPEST = 1e-4  # of the largest modulus, the least that is drawn
 
 

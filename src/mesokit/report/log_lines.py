@@ -24,7 +24,7 @@ class LogLines:
         self.names = [name for name in names if not name.endswith(ERROR)]
         self.uncertain = [f"{name}{ERROR}" in names for name in self.names]
         self.widths = [max(len(name), NARROWEST) for name in self.names]
-        self.told = 0
+        self.shown = 0
 
     def next(self, row: Sequence[float]) -> list[str]:
         """The line of these numbers, after a header where that is due."""
@@ -32,6 +32,6 @@ class LogLines:
         for uncertain in self.uncertain:
             number = next(numbers)
             texts.append(with_error(number, next(numbers)) if uncertain else f"{number:.6g}")
-        rows = [self.names, texts] if self.told % AGAIN == 0 else [texts]
-        self.told += 1
+        rows = [self.names, texts] if self.shown % AGAIN == 0 else [texts]
+        self.shown += 1
         return ["  ".join(map(str.rjust, words, self.widths)) for words in rows]

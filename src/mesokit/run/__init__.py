@@ -1,1 +1,1 @@
-"""What a run needs around its loop over steps."""
+"""A run: its loop over steps and all around it."""

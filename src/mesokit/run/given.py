@@ -64,7 +64,7 @@ def require_ranks(case: Case, ranks: int) -> None:
     check(case, ranks)
 
 
-def told(case: Case, callbacks: Callbacks, arrays: Mapping[str, Any]) -> dict[str, str]:
+def given_facts(case: Case, callbacks: Callbacks, arrays: Mapping[str, Any]) -> dict[str, str]:
     """The arguments as texts, which must be the same on all ranks."""
     calls = ", ".join(str(each.steps) for each in callbacks.given)
     return {"case": case.to_toml(), "steps of callbacks": f"[{calls}]"} | {

@@ -192,7 +192,9 @@ def swallowed(kind: type[BaseException]) -> Iterator[None]:
     """Do not print exceptions of a kind that Python drops because C code, such as the compiler,
     cannot pass them on."""
     earlier = sys.unraisablehook
-    sys.unraisablehook = lambda told: None if isinstance(told.exc_value, kind) else earlier(told)
+    sys.unraisablehook = lambda raised: (
+        None if isinstance(raised.exc_value, kind) else earlier(raised)
+    )
     try:
         yield
     finally:

@@ -94,7 +94,7 @@ class RunFiles(Shown, Mapping[str, Result]):
         """Numbers in time, as `files.log["temperature"]`; also while the run goes on.
 
         A structured array with a field for each column: `pandas.DataFrame(files.log)` is a table.
-        Raises RunError if the case asks for none.
+        Raises RunError if the case has none.
         """
         if self.case.log is None:
             raise RunError(f"{self.path}: the case has no [log]")
@@ -102,7 +102,7 @@ class RunFiles(Shown, Mapping[str, Result]):
 
     @cached_property
     def trajectory(self) -> TrajectoryReader | None:
-        """Frames, None if the case asked for none. Raises RunError if the run has not ended."""
+        """Frames, None if the case has none. Raises RunError if the run has not ended."""
         with self._advising():
             reader = TrajectoryReader(self._data())
         return reader if reader.fields else None

@@ -19,8 +19,8 @@ from mesokit.seam.pooled import pool
 from mesokit.seam.result import Result
 
 ALIKE = (
-    "run.replicas: the first two move alike: neither their start nor what moves them knows of the "
-    "seed; expected velocities or places that are drawn"
+    "run.replicas: the first two move alike: neither their start nor what moves them depends on "
+    "the seed; expected velocities or places that are drawn"
 )
 
 

@@ -24,7 +24,7 @@ from mesokit.report.progress import Reporter
 from mesokit.run import pictures
 from mesokit.run.callbacks import Callback, Callbacks
 from mesokit.run.folder import Folder, existing, note_failed
-from mesokit.run.given import case_and_arrays, require_ranks, threads_of, told
+from mesokit.run.given import case_and_arrays, given_facts, require_ranks, threads_of
 from mesokit.run.log import RunLog
 from mesokit.run.loop import Loop
 from mesokit.run.replicas import Replicas
@@ -83,7 +83,7 @@ class Simulation(Shown):
         self.case, arrays = case_and_arrays(case, parts)
         self.threads = threads_of(threads, self.ranks)
         facts = {"output": str(output)}
-        self.ranks.require_same(lambda: told(self.case, self.callbacks, arrays) | facts)
+        self.ranks.require_same(lambda: given_facts(self.case, self.callbacks, arrays) | facts)
         with blaming(self.case):
             self.case = method_of(self.case).initial.prepared(self.case, arrays)
             self._build()
@@ -144,7 +144,7 @@ class Simulation(Shown):
             self.threads = threads_of(threads, here)
             self.callbacks = Callbacks(callbacks)
             given = {"steps": str(steps)}
-            here.require_same(lambda: told(self.case, self.callbacks, {}) | given)
+            here.require_same(lambda: given_facts(self.case, self.callbacks, {}) | given)
             self._build()
             folder = self._write_in(directory)
             folder.take_up(self.replicas)

@@ -1,6 +1,6 @@
 """Sums in bins of what many have a part of: exact, so that their bits do not depend on the order.
 
-Each term is rounded to whole quanta, 2^-52 of a unit that it is told, and these are cut into limbs
+Each term is rounded to whole quanta, 2^-52 of a unit that it is given, and these are cut into limbs
 of 32 bits with the sign of the term. Of terms up to 2^44 units there are three limbs; what is more,
 or no number, is counted by itself, and the sum is then nan.
 """

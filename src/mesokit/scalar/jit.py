@@ -35,7 +35,7 @@ def _part(function: Callable, **options: bool) -> Any:
 def seldom(function: Callable) -> Any:
     """As `scalar`, for what few particles need: compiled once and called, not inlined.
 
-    Both compilers must be told. Numba for the CPU hands the wish to be inlined on from a function
+    Both compilers need it. Numba for the CPU hands the wish to be inlined on from a function
     to those that it calls. What CUDA is given as the function is one that says of itself that it
     is not to be inlined, and then does the work.
     """

@@ -1,6 +1,6 @@
-"""What compiled code asks of the operating system, whichever it is.
+"""Functions of the operating system that compiled code calls, whichever it is.
 
-The functions have the same names on all systems, under which their addresses are told to LLVM when
+The functions have the same names on all systems, under which LLVM receives their addresses when
 this is imported; so kernels that were compiled in another process find them too.
 """
 
@@ -37,7 +37,7 @@ if sys.platform == "win32":
         _counter(np.uint64(room.ctypes.data))
         return room[0]
 
-    read_work_clock = read_clock  # time of a thread alone is told too coarsely
+    read_work_clock = read_clock  # time of a thread alone is too coarse
 
 else:
     _library = ctypes.CDLL(None)

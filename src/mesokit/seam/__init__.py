@@ -1,1 +1,1 @@
-"""What methods, engines and observables answer, and what a result is."""
+"""Protocols of methods, engines and observables, and results."""

@@ -58,7 +58,7 @@ class Interrupted(Exception):
 
 
 class Engine(Clock, Protocol):
-    """What a simulation uses of an engine, whatever it holds."""
+    """Members of an engine that a simulation uses, whatever it holds."""
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps, in compiled code; 0 only loads or compiles it.
@@ -169,7 +169,7 @@ class RunningSpheres(Particles, Protocol):
     """Readings of an engine of disks or spheres, for observables.
 
     `totals` and `moments` are as of a fluid, the latter of all or some. `spins` (n,) in 2D or (n,
-    3) in 3D are angular velocities; `energies` tells "translation", "rotation" and "potential".
+    3) in 3D are angular velocities; `energies` has "translation", "rotation" and "potential".
     `wall_impulse` (surfaces, d) is the momentum that each surface has taken since the warm-up.
     """
 

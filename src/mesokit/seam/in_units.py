@@ -18,7 +18,7 @@ _SHOWN: ContextVar[Units] = ContextVar("units that figures show", default=CELLS)
 
 
 def units_of(case: Case) -> Units:
-    """What the method of a case counts in."""
+    """Units of the method of a case."""
     return method_of(case).units
 
 

@@ -32,7 +32,7 @@ Row = tuple[str, str, str]  # what, its value, and a word on it
 
 
 class Summary(NamedTuple):
-    """What follows from a case before it runs: a table for `mesokit check`, warnings, about how
+    """Summary of a case before it runs: a table for `mesokit check`, warnings, about how
     many seconds the run takes, the same as plain numbers by name, for scripts, and about how many
     bytes of memory it takes."""
 
@@ -43,7 +43,7 @@ class Summary(NamedTuple):
     memory: float = 0.0
 
     def record(self) -> dict[str, object]:
-        """What `mesokit check --json` prints of it."""
+        """The part that `mesokit check --json` prints."""
         rows = [{"what": what, "value": value, "note": note} for what, value, note in self.rows]
         return {
             "numbers": dict(self.numbers),
@@ -87,7 +87,7 @@ class BuildUp(NamedTuple):
 
 
 class InitialState(NamedTuple, Generic[E, S]):
-    """What a case starts from.
+    """First state of a case.
 
     read: of a case and arrays by name, what to start from, checked; raises CaseError. Whatever it
     returns goes to `fill`, which puts it into an engine. arrays: names of those that a `Simulation`
@@ -238,7 +238,7 @@ def method_of(case: Case) -> Method:
 
 
 def summary_of(case: Case, threads: int | None = None) -> Summary:
-    """What follows from a case, by its method; of replicas how long all of them take."""
+    """Summary of a case by its method; the run time of replicas is that of all of them."""
     summary, number, seed = method_of(case).summary, case.run.replicas, case.run.seed
     if number == 1:
         found = summary(case, threads)

@@ -12,7 +12,7 @@ class Named(Protocol):
 
     @property
     def what(self) -> str:
-        """What it is, such as "viscosity from curvature"."""
+        """Words for it, such as "viscosity from curvature"."""
         ...
 
 

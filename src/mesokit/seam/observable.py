@@ -50,7 +50,7 @@ class Observable(ABC):  # noqa: B024  # `accumulator` is abstract
     methods: ClassVar[tuple[str, ...]] = ()  # it is for, beside those that offer it
     of_methods_alone: ClassVar[bool] = False  # whether it is for no others
     needs_fluid: ClassVar[bool] = True  # whether solutes alone cannot answer it
-    in_open_box: ClassVar[bool] = False  # whether it can be told of particles far outside the box
+    in_open_box: ClassVar[bool] = False  # True: measured of particles far outside the box too
     # whether its theory needs the transport coefficients of the fluid as it is, molecules and all
     asks_transport: ClassVar[bool] = False
     of_built_up_flow: ClassVar[bool] = False  # whether its theory is of the steady flow

@@ -1,4 +1,4 @@
-"""What lengths, times and masses are counted in: cells of MPCD, or whatever a case means by 1."""
+"""Units of length, time and mass: cells of MPCD, or whatever a case means by 1."""
 
 import re
 from typing import NamedTuple

@@ -182,7 +182,7 @@ def blocking_error(series: ArrayLike) -> float:
 
 
 def student(values: int) -> float:
-    """Factor by which the error of a mean of few values is larger than their scatter tells.
+    """Factor by which the error of a mean of few values is larger than their scatter gives.
 
     The scatter of few values is itself uncertain. With this factor the error bar holds the truth as
     often as one standard error of many values does, 68 times of 100, whatever their number.

@@ -72,7 +72,7 @@ class NotebookStudyReporter(NotebookReporter, StudyReporter):
 def reporter_for(progress: StudyReporter | bool | None) -> StudyReporter:
     """The reporter of a study, as `mesokit.report.document.progress.reporter_for` of a run.
 
-    Raises CaseError for a reporter that knows of no runs.
+    Raises CaseError for a reporter without runs.
     """
     if isinstance(progress, StudyReporter):
         return progress

@@ -35,7 +35,7 @@ class Group(NamedTuple):
 
 
 class Numbers(NamedTuple):
-    """What is varied, as headings, and all numbers; `seeds` and `notes` if any line has them."""
+    """Varied keys as headings, and all numbers; `seeds` and `notes` if any line has them."""
 
     keys: list[str]
     groups: list[Group]

@@ -202,7 +202,7 @@ class Study(Shown):
         options : mapping, optional
             Of the jobs of a cluster, such as {"queue": "long", "walltime": "10:00:00"}.
         progress : bool or StudyReporter, optional
-            True tells how it goes, False says nothing; in a notebook there is a bar unless False.
+            True shows progress, False says nothing; in a notebook there is a bar unless False.
 
         Raises RunError when all others have ended, if runs have failed. A signal raises
         KeyboardInterrupt when the runs in hand have come to a checkpoint; `run` again goes on.

@@ -71,10 +71,10 @@ def serve(threads: int, modules: Sequence[str]) -> None:
     """
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what others print is no answer
-    asked: queue.SimpleQueue[str] = queue.SimpleQueue()
+    lines: queue.SimpleQueue[str] = queue.SimpleQueue()
     busy = threading.Event()
-    threading.Thread(target=_listen, args=(asked, busy), daemon=True).start()
-    while path := asked.get():
+    threading.Thread(target=_listen, args=(lines, busy), daemon=True).start()
+    while path := lines.get():
         busy.set()
         said = carry(path, threads, modules)
         busy.clear()
@@ -82,10 +82,10 @@ def serve(threads: int, modules: Sequence[str]) -> None:
             print(" ".join(said.split()), file=answers, flush=True)
 
 
-def _listen(asked: queue.SimpleQueue[str], busy: threading.Event) -> None:
+def _listen(lines: queue.SimpleQueue[str], busy: threading.Event) -> None:
     for line in sys.stdin:
-        asked.put(line.rstrip("\n"))
-    asked.put("")
+        lines.put(line.rstrip("\n"))
+    lines.put("")
     if busy.is_set():
         signal.raise_signal(signal.SIGTERM)
 

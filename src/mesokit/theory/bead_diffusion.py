@@ -1,4 +1,4 @@
-"""Diffusion of a heavy bead that collides with a fluid that forgets, among other beads."""
+"""Diffusion of a heavy bead that collides with a fluid without memory, among other beads."""
 
 import math
 
@@ -83,7 +83,7 @@ def _inverse_mass(mass: float, density: float, solvent_mass: float) -> float:
 def _together(
     lost: tuple[float, float], turned: float, kept: tuple[float, float], dimension: int
 ) -> float:
-    """For how many more steps a bead remembers its velocity because of another, integrated over
+    """Number of steps by which another bead prolongs the memory of a velocity, integrated over
     where that is (in cells).
 
     `lost`: shares of the velocities of the two that a collision takes apart; `kept`: shares of them

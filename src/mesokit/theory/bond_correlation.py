@@ -32,7 +32,7 @@ def bond_correlation(
 ) -> BondCorrelation:
     """Correlations of the bonds of molecules of springs without rest length, in steady shear.
 
-    Each mode forgets itself with its normal-mode time 2 tau_p, and is carried on along x by what
+    Each mode decays with its normal-mode time 2 tau_p, and is carried on along x by what
     it has along y: with c = <b^2>/d and e_p = exp(-t/2 tau_p), averaged over modes,
     yy = zz = c e_p, yx = c e_p rate tau_p, xy = c e_p rate (tau_p + t) and
     xx = c e_p (1 + 2 (rate tau_p)^2 + rate^2 tau_p t).

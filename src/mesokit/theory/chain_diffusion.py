@@ -55,10 +55,10 @@ def kirkwood_in_cells(
     cell: this adds four numbers uniform in [-1/2, 1/2] to each component of a distance, of variance
     1/3 together.
 
-    Parameters: as in `kirkwood_diffusion`, but `friction` is that of a bead in a fluid that forgets
-    (kT over `bead_diffusion`); what a single bead drags along is in the sum. Raises ValueError for
-    a value out of range. Source: derived here. Valid for Gaussian chains and monomers in a large
-    box (see `diffusion_in_box`), with the full grid shift.
+    Parameters: as in `kirkwood_diffusion`, but `friction` is that of a bead in a fluid without
+    memory (kT over `bead_diffusion`); what one bead drags along is in the sum. Raises
+    ValueError for a value out of range. Source: derived here. Valid for Gaussian chains and
+    monomers in a large box (see `diffusion_in_box`), with the full grid shift.
 
     >>> round(kirkwood_in_cells(1, friction=72.77, viscosity=8.695, bond_length=1), 5)
     0.02217

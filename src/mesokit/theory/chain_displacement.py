@@ -20,7 +20,7 @@ def msd_rouse_beads(
     """Mean square displacement after n steps, averaged over the beads of a Rouse molecule.
 
     That of the centre of mass, which is a particle as heavy as all beads, and of each normal mode p
-    twice its mean square d kT/(k lambda_p), less what it remembers:
+    twice its mean square d kT/(k lambda_p), less the part that is left:
     (2/N) sum_p d kT/(k lambda_p) (1 - C_p(n)), C_p(n) = [M^n]_xx, where M turns (x, v) as the
     spring does in a timestep and then takes the share g off v. With more friction than inertia C_p
     is exp(-t/tau_p), and this is Rouse's sum.

@@ -12,7 +12,7 @@ def flight_moduli(
 
     A flight in shear adds n kT dt times the rate to the kinetic stress, and each collision keeps
     the part f of it. The stress of a step is the mean of that before and after its collision. At
-    zero frequency this is the kinetic viscosity n kT dt (1/(1 - f) - 1/2), which tells f.
+    zero frequency this is the kinetic viscosity n kT dt (1/(1 - f) - 1/2), which gives f.
 
     Parameters:
         frequency: angular frequency w of the strain.

@@ -60,7 +60,7 @@ def temperature_offset(
     cells. At molecular chaos T is kT for every rule and thermostat, and `at`, `at+a` and `srd` with
     "maxwell-boltzmann" leave the canonical distribution alone. "rescale" does not (it allows no
     fluctuation of a cell's energy), nor does "srd+a" (its rotation mixes rigid and free motion
-    before it scales); where particles meet again, that tells on T.
+    before it scales); where particles meet again, that changes T.
 
     Raises ValueError for a value out of range. Source: a bound on what was measured for
     docs/theory.md (densities 1.5 to 20, mean free paths 0.02 to 4, angles 60 to 130 degrees):

@@ -147,7 +147,7 @@ def _ordered(strength: float, number: int, dimension: int) -> CrowdOrder:
 
 
 def _disordered(strength: float, number: int, dimension: int) -> CrowdOrder:
-    """The mean heading is normal, and remembers g' of itself; 3D has no further term."""
+    """The mean heading is normal, and keeps a share g' of itself; 3D has no further term."""
     slope = (dimension - 1) / (dimension * strength)
     square = 1 / (number * (1 - slope**2) + slope**2) if slope < 1 else math.inf
     if dimension == 2:

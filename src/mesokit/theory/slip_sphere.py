@@ -14,7 +14,7 @@ def enskog_friction(
     kT: float = 1.0,
     solvent_mass: float = 1.0,
 ) -> float:
-    """Friction of a smooth sphere or disk by the hits of an ideal gas that forgets them.
+    """Friction of a smooth sphere or disk by the hits of an ideal gas without memory.
 
     (8/3) sqrt(2 pi kT mu) n R^2 in 3D and 2 sqrt(2 pi kT mu) n R in 2D, with mu the reduced mass.
 

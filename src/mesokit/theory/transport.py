@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 Rule = Literal["srd", "srd+a", "at", "at+a"]
 Angle = float | Literal["uniform"] | None
 Thermostat = Literal["none", "maxwell-boltzmann", "rescale"]
-ROUNDING = 1e-13  # what a collision must forget at least to be told from a rounding error
+ROUNDING = 1e-13  # least loss in a collision that is more than a rounding error
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def transport(
     Valid for M of at least about 3 and a grid shift. Correlated collisions (mean free path below
     about 0.2) raise D by some 15 % and change nu by 1 to 2 %; fluctuations raise nu further,
     mostly in 2D (`viscosity_renormalised`). With a thermostat D and nu_kin are a one-step estimate,
-    1 to 13 % low where the collision remembers velocities (SRD with small angles, few particles).
+    1 to 13 % low where velocities outlast the collision (SRD with small angles, few particles).
 
     >>> t = transport("srd", dimension=3, density=10, timestep=0.1, angle=130)
     >>> round(t.viscosity, 4), round(t.diffusion, 4), round(t.schmidt, 2)
@@ -117,7 +117,7 @@ def transport(
     heat = attenuation = None
     c2 = kT / mass
     if isothermal:
-        # the trace of the stress decays with the energy that the collision forgets
+        # the trace of the stress decays with the energy that the collision destroys
         attenuation = (
             2 * (dimension - 1) / dimension * kinetic + 2 / dimension * time(rigid) + moved(along)
         )
@@ -148,7 +148,7 @@ def transport(
 
 
 def takes_angle(rule: str) -> bool:
-    """Whether a rule turns velocities by an angle, which `transport` then asks for.
+    """True if a rule turns velocities by an angle, which `transport` then needs.
 
     >>> takes_angle("srd"), takes_angle("at+a")
     (True, False)
@@ -229,7 +229,7 @@ def _rotation(dimension: int, angle: float | None) -> tuple[float, float, float]
 
 
 def _thermostat(thermostat: str, freedoms: Array) -> tuple[Array, Array]:
-    """What scaling a cell to a new energy keeps of a velocity and of a stress.
+    """Share of a velocity and of a stress that is left where a cell is scaled to a new energy.
 
     The scaling is s^2 = E'/E with E drawn from Gamma(k = f/2) for f degrees of freedom, and E'
     likewise or k: <s E>/<E> is then c^2 or c with c = Gamma(k + 1/2)/(Gamma(k) sqrt(k)), and

@@ -22,7 +22,7 @@ def virtual_gas_slip(
 
     Parameters as in `transport`. Virtual particles have the mean velocity that the fluid would have
     in the solid, but are drawn from a gas at rest: they know nothing of its shear stress. A
-    collision with them forgets more of the stress of the fluid than one within it, which lowers
+    collision with them destroys more of the stress of the fluid than one within it, which lowers
     the kinetic viscosity within a cell of the plate. With the share K = 1 - g_S that a collision
     keeps, and at the distance y from the plate
         K(y) = K - (1 - y)^2/2 <1/N> (1 + r2 - 2 r1),
@@ -35,7 +35,7 @@ def virtual_gas_slip(
 
     >>> round(virtual_gas_slip("at", 3, 4, 0.6), 3), round(virtual_gas_slip("at", 3, 10, 0.1), 3)
     (0.066, 0.002)
-    >>> virtual_gas_slip("srd", 2, 4, 0.6, angle=90)  # forgets the same of both
+    >>> virtual_gas_slip("srd", 2, 4, 0.6, angle=90)  # destroys the same of both
     0.0
     """
     one_of(("srd", "at"), rule=rule)

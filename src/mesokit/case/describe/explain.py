@@ -32,7 +32,7 @@ class Place(NamedTuple):
 
 
 def explain(path: str = "") -> list[Explanation]:
-    """What a key or a part of a case means, such as "wall.disk" or "fluid.force.acceleration".
+    """Meaning of a key or a part of a case, such as "wall.disk" or "fluid.force.acceleration".
 
     The name of a part alone, such as "wake", is looked for everywhere, any other in the sections,
     such as "pulls" of [solutes]. Without a path: sections.

@@ -37,10 +37,12 @@ class Key(NamedTuple):
 
     @property
     def values(self) -> str:
-        """What it takes, in which unit, and its default: 'number above 0 [a], default 1'."""
+        """Its values, unit and default: 'number above 0 [a], default 1'."""
         takes = f"{self.takes} [{self.unit}]" if self.unit else self.takes
-        told = self.default in ("", REQUIRED)
-        return ", ".join(filter(None, [takes, self.default if told else f"default {self.default}"]))
+        complete = self.default in ("", REQUIRED)
+        return ", ".join(
+            filter(None, [takes, self.default if complete else f"default {self.default}"])
+        )
 
 
 class Documented:
@@ -82,7 +84,7 @@ def keys_of(definition: Mapping[str, Any], definitions: Mapping[str, Schema]) ->
 
 
 def takes(node: Schema, definitions: Mapping[str, Schema]) -> str:
-    """What a key takes, in words, such as 'number above 0'."""
+    """Values that a key takes, in words, such as 'number above 0'."""
     if "const" in node:
         return _text(node["const"])
     if "enum" in node:
@@ -101,7 +103,7 @@ def takes(node: Schema, definitions: Mapping[str, Schema]) -> str:
         words = [takes(each, definitions) for each in node["anyOf"]]
         if len(set(words)) > 1 and all("title" in each for each in node["anyOf"]):
             pairs = zip(node["anyOf"], words, strict=True)
-            return "; ".join(f"{each['title']}: {told}" for each, told in pairs)
+            return "; ".join(f"{each['title']}: {complete}" for each, complete in pairs)
         return _listed(list(dict.fromkeys(words)))
     if "items" in node:
         number = f"{node['minItems']} " if node.get("minItems", 0) == node.get("maxItems") else ""

@@ -83,12 +83,14 @@ def _any_of_both(
                 known = joint.setdefault(inside, inner)
                 if known != inner:
                     both_tables = [(each, t["properties"][inside]) for each, t in tables.items()]
-                    told = {each: key.get("description", "") for each, key in both_tables}
-                    words = "; ".join(f"method '{each}': {text}" for each, text in told.items())
+                    described = {each: key.get("description", "") for each, key in both_tables}
+                    words = "; ".join(
+                        f"method '{each}': {text}" for each, text in described.items()
+                    )
                     joint[inside] = {
                         "anyOf": [{**k, "title": f"method '{each}'"} for each, k in both_tables],
                         "description": inner.get("description", "")
-                        if len(set(told.values())) == 1
+                        if len(set(described.values())) == 1
                         else words,
                     }
             else:

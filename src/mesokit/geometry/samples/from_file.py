@@ -78,7 +78,7 @@ class FromFile(FromContents, Shape):
 
 @functools.lru_cache(maxsize=8)
 def _found(shape: FromFile, digest: str, room: Room) -> Grid:
-    """Shapes are equal where they name one file, whatever it holds: so the digest tells too."""
+    """Grid of a shape; those of one file are equal whatever it holds, so the digest is compared."""
     grid = shape.grid(room)
     grid.values.flags.writeable = False
     return grid

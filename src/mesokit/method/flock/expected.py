@@ -59,7 +59,7 @@ class Displacement(mean_square_displacement.Displacement):
         return (walk, "a lone bird") if math.isfinite(walk) else (math.nan, "a straight flight")
 
     def diffusive_from(self) -> float:
-        """Time in which a lone bird forgets its heading; infinite where it is unknown."""
+        """Time in which a lone bird loses its heading; infinite where it is unknown."""
         if not self.memory < 1:
             return math.inf
         if self.memory <= 0:

@@ -1,4 +1,4 @@
-"""Flocks, as the rest of the package knows them."""
+"""Flocks, as the record by which the package runs them."""
 
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
@@ -33,8 +33,8 @@ def columns(case: Case) -> Columns:
 
     def read(engine: Flocks, wanted: Collection[str]) -> dict[str, float]:
         mean = engine.headings().mean(axis=0)
-        told = dict(zip(names, (float(np.linalg.norm(mean)), *map(float, mean)), strict=True))
-        return {name: told[name] for name in wanted}
+        values = dict(zip(names, (float(np.linalg.norm(mean)), *map(float, mean)), strict=True))
+        return {name: values[name] for name in wanted}
 
     return Columns(names, names[:1], read)
 

@@ -24,8 +24,8 @@ def columns(case: Case) -> Columns:
         number, momentum, kinetic = engine.totals()
         values = [temperature(case, number, momentum, kinetic), kinetic]
         if bonded:
-            asked = {"potential energy", "total energy"} & set(wanted)
-            potential = engine.potential_energy() if asked else np.nan
+            needed = {"potential energy", "total energy"} & set(wanted)
+            potential = engine.potential_energy() if needed else np.nan
             values += [potential, kinetic + potential]
         values += [*momentum, *(momentum / (total_mass(case, number) or np.nan))]
         found = dict(zip(names, values, strict=True))
@@ -48,12 +48,12 @@ def temperature(case: Case, number: int, momentum: Array, energy: float) -> floa
     d = case.box.dimension
     if number == 0:
         return float(np.nan)
-    if case.walls or forgets(case):
+    if case.walls or in_random_solvent(case):
         return 2 * energy / (d * number)
     about_mean = 2 * energy - float(momentum @ momentum) / total_mass(case, number)
     return about_mean / (d * max(number - 1, 1))
 
 
-def forgets(case: Case) -> bool:
+def in_random_solvent(case: Case) -> bool:
     """True if the solvent takes momentum and energy, and does not return them."""
     return case.solutes is not None and case.solutes.solvent == "random"

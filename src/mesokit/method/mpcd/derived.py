@@ -26,7 +26,7 @@ FIRST_ZERO = 2.404825557695773  # of the Bessel function J_0: the slowest mode o
 # factors of time, rate
 COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.3, "shear": 1.2, "thread": 0.85}
 # seconds more for each particle-step of a molecule, and for each of its sub-steps
-FLOCK, SUBSTEP = 5e-9, 1e-9
+MOLECULE, SUBSTEP = 5e-9, 1e-9
 BEAD, BEAD_SUBSTEP = 100e-9, 45e-9  # and for each step and sub-step of a bead of a solute
 SAMPLE = 12e-9  # seconds for each particle in each sample of an observable
 BYTES = {
@@ -81,7 +81,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         substeps = fluid.molecule.number_of_substeps(
             dimension, fluid.timestep, fluid.kT, fluid.mass
         )
-        rate = 1 / (1 / rate + (FLOCK + SUBSTEP * substeps) / threads)
+        rate = 1 / (1 / rate + (MOLECULE + SUBSTEP * substeps) / threads)
     beads, bead_seconds = 0, 0.0
     if case.solutes is not None:
         beads = case.solutes.beads

@@ -1,6 +1,6 @@
 """Multi-particle collision dynamics: the record of the method, and the sections of its cases.
 
-The only file of this folder that imports engines, observables and files; it is loaded by name.
+It imports engines, observables and files, and is loaded by name.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[w
 
 
 class Sections:
-    """What a case of MPCD has beside the sections of every case."""
+    """Sections of a case of MPCD beside those of every case."""
 
     fluid: Fluid = param(Fluid(), doc="the fluid")
     solutes: Solutes | None = param(None, doc="monomers and polymers in the fluid (none)")

@@ -16,7 +16,7 @@ Row = tuple[str, str, str]  # what, its value, and a word on it
 
 @dataclass(frozen=True, repr=False)
 class Derived(Shown):
-    """What follows from a case. Lengths in cells; None where there is no formula.
+    """Numbers that follow from a case. Lengths in cells; None where there is no formula.
 
     `transport` holds the coefficients of the whole fluid, `solvent` those of a fluid without the
     solutes that are in it.

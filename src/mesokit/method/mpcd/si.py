@@ -35,7 +35,7 @@ WORDS = {
 
 @dataclass(frozen=True)
 class SI:
-    """What one reduced unit is in SI: a number of the simulation times that is the number in SI.
+    """Reduced units in SI: a number of the simulation times that is the number in SI.
 
     `length` (m), `mass` (kg) and `time` (s) are the units. In 2D the box stands for a slice of the
     real fluid, `depth` (m) deep, and masses, forces and energies are those of the slice; in 3D the

@@ -350,7 +350,7 @@ def _kernels(potentials: Sequence[Any], all_of_them: bool = False) -> tuple[Any,
 
 
 class Potentials(NamedTuple):
-    """What beads feel: (potential,) or () for each of bond, angle, pair and wall.
+    """Potentials that act on beads: (potential,) or () for each of bond, angle, pair and wall.
 
     Where kinds of solutes differ it is (Several,). inverse_mass is that of beads of one mass.
     """

@@ -183,7 +183,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
             yield (
                 f"{case.box.shear_key}: the images move at up to {faster:.2g} times the speed of "
                 f"sound (rate x height, {history.largest:.3g} x {case.box.size[1]}): above "
-                f"{SHOCK:g} they drive shocks into the fluid, of which no theory of shear knows; "
+                f"{SHOCK:g} they drive shocks into the fluid, which no theory of shear has; "
                 "shear more slowly"
             )
     pressed = compression(case)

@@ -14,8 +14,8 @@ from mesokit.seam.method import BuildUp, method_of
 from mesokit.seam.observable import Accumulator
 from mesokit.seam.result import NOT_STEADY, Comparison, Result, with_error
 
-MATTERS = 0.5  # of the standard error: a missing part that is larger is told
-MUCH = 0.05  # of the speed: a missing part that is larger is told, whatever the error
+MATTERS = 0.5  # of the standard error: a missing part that is larger is reported
+MUCH = 0.05  # of the speed: a missing part that is larger is reported, whatever the error
 DRIFTS = 5.0  # standard errors between both halves of the samples: the flow still changes
 
 
@@ -45,8 +45,8 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
 
 
 def _marked(result: Result, note: str, but: tuple[str, ...] = ()) -> Result:
-    """With a note in front of those of its comparisons, but of those with such words in their
-    names, or that are not steady for another reason."""
+    """The result with a note in front of the notes of its comparisons, except of those whose names
+    have one of the words `but`, or that are not steady for another reason."""
 
     def marked(comparison: Comparison) -> Comparison:
         if not comparison.steady or _has(comparison, but):
@@ -83,7 +83,7 @@ def _too_early(build_up: BuildUp, estimated: bool, of_flow: list[Comparison], le
     bar. In a flow that builds up the error bar grows with the missing part.
     """
     lacks = build_up.lacks(length) if length else 0.0
-    enough = build_up.had >= build_up.need  # then only an error bar that is known tells more
+    enough = build_up.had >= build_up.need  # then only a known error bar says more
     for c in of_flow:
         missing = lacks * abs(c.measured if math.isnan(c.expected) else c.expected)
         off = missing > MATTERS * c.error or (lacks > MUCH and missing > 0)

@@ -28,7 +28,7 @@ def with_those_of(result: Result, runs: Sequence[Result]) -> Result:
 
 
 def _with(pooled: Comparison, notes: Sequence[str]) -> Comparison:
-    """One of them, given the notes of the same number in each run.
+    """A pooled comparison with a caveat from the notes of the same number in each run.
 
     >>> _with(Comparison("slip", 0.1, 0.2), ["not steady: a; b", "not steady: c"]).note
     'not steady: a'

@@ -21,7 +21,7 @@ def mode_chi_square(
 
     Modes of a uniform system are independent of each other where bins are not. The mean is left
     out, it is mostly conserved. So are the longest waves, which diffusion levels in L^2/(4 pi^2 D):
-    those that one block of time remembers of the one before by more than `MOST`. The others
+    those whose neighbouring blocks of time are correlated by more than `MOST`. The others
     forget by a factor from block to block, which neighbouring waves share. Nothing is returned
     with fewer than 8 blocks, with empty bins, or if no wave is short enough for the run.
     """

@@ -20,7 +20,7 @@ BLOCKS = 32  # of time, for the same
 class Origins:
     """Averages over particles and origins of a function of a quantity at two times.
 
-    Level l remembers every 2^l-th sample, POINTS of them: lags 0 to 15, 16, 18 ... 30, 32, 36 ...
+    Level l keeps every 2^l-th sample, POINTS of them: lags 0 to 15, 16, 18 ... 30, 32, 36 ...
     Nothing is averaged in time, every value is exact. Error bars come from the scatter between
     groups of particles, and from that between blocks of time, to which a product belongs by the
     later of its two times (see `Estimate`).

@@ -1,1 +1,1 @@
-"""What happens to a drawing afterwards: legend, several in one plot, where it comes from, file."""
+"""Finish of a drawing: legend, several in one plot, where it comes from, file."""

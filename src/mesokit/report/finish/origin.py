@@ -19,7 +19,7 @@ class Origin(NamedTuple):
     digest: str = ""
 
     def line(self) -> str:
-        """What is written below a figure.
+        """The line below a figure.
 
         >>> Origin("Channel", "run-3", 7, "0a" * 32).line().startswith("Channel, run run-3, seed 7")
         True

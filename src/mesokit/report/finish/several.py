@@ -1,4 +1,4 @@
-"""Several results in one plot, so that they can be told apart: a colour and a name for each."""
+"""Several results in one plot, with a colour and a name for each."""
 
 from collections.abc import Callable
 from typing import Any

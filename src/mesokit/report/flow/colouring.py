@@ -35,10 +35,10 @@ class Frame(NamedTuple):
 
 
 class Colouring(NamedTuple):
-    """What each sphere's number is, the scale of numbers up to a largest, and the fields it needs.
+    """Number of each sphere, the scale of numbers up to a largest, and the fields it needs.
 
     `all`: whether all spheres must be in the trajectory. `counted`: whether numbers are whole.
-    `tells`: what of a frame its numbers do not show.
+    `remark`: words for what the numbers of a frame do not show.
     """
 
     numbers: Callable[[Frame], Array]
@@ -46,7 +46,7 @@ class Colouring(NamedTuple):
     needs: tuple[str, ...] = ()
     all: bool = False
     counted: bool = False
-    tells: Callable[[Frame], str] = lambda now: ""
+    remark: Callable[[Frame], str] = lambda now: ""
 
 
 def speed(now: Frame) -> Array:
@@ -64,7 +64,7 @@ def _usual(now: Frame) -> float:
     return float(np.sqrt((speed(now) ** 2).mean()))
 
 
-def _told(now: Frame) -> str:
+def _remark(now: Frame) -> str:
     """The unit of relative speeds, in words."""
     return f"rms speed ${rounded(_usual(now), 2)}$ {symbols('a/tau')}"
 
@@ -150,7 +150,7 @@ COLOURS: dict[str, Colouring] = {
         relative,
         lambda case, reach: Scale(0.0, reach, "viridis", "speed / rms speed of the frame"),
         ("velocity",),
-        tells=_told,
+        remark=_remark,
     ),
     "spin": Colouring(spin, _spins, ("spin",)),
     "neighbours": Colouring(neighbours, _counts, all=True, counted=True),

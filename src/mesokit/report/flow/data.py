@@ -1,4 +1,4 @@
-"""What a picture of the flow is drawn from."""
+"""Data from which a picture of the flow is drawn."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class Spheres:
     repeats: vectors (2,) by which all of it repeats, the first of them 0.
     time: of the frame.
     note: what of the box is shown.
-    tells: what colours do not show of this time.
+    remark: what colours do not show of this time.
     plates: that are not where they are at rest, see `moving_plates`.
     """
 
@@ -41,7 +41,7 @@ class Spheres:
     time: float
     note: str = ""
     plates: tuple[Any, ...] = ()
-    tells: str = ""
+    remark: str = ""
 
     def seen(
         self, low: tuple[float, float], high: tuple[float, float]
@@ -86,7 +86,7 @@ class Beads:
 
     @property
     def names(self) -> list[str]:
-        """What to call the kinds in a legend; none where there is one kind only."""
+        """Names of the kinds in a legend; none where there is one kind only."""
         kinds = np.unique(self.kinds)
         return [self.called[kind] for kind in kinds] if len(kinds) > 1 else []
 

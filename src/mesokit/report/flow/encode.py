@@ -16,7 +16,7 @@ QUALITY = 7  # of 10: letters stay sharp
 
 
 def mp4(path: Path, pictures: Iterator[Pixels], fps: float, about: About) -> None:
-    """Write pictures (height, width, 3) as a film that every player knows (H.264, yuv420p).
+    """Write pictures (height, width, 3) as a film that every player reads (H.264, yuv420p).
 
     Such films have even sizes: an odd last row or column is left out. `about` are entries of the
     file's metadata. Raises RunError if the film

@@ -183,8 +183,8 @@ def _pictures(
         beads = solutes.at(now) if solutes else None
         flow = replace(smooth(source.flow(mean), width), beads=beads)
         stamp = at(now)
-        if flow.spheres is not None and flow.spheres.tells:
-            stamp += f", {flow.spheres.tells}"
+        if flow.spheres is not None and flow.spheres.remark:
+            stamp += f", {flow.spheres.remark}"
         drawn.show([flow] * len(drawn.panels), stamp)
         canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[..., :3]

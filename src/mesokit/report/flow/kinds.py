@@ -49,7 +49,7 @@ KINDS: dict[str, tuple[Panel, ...]] = {
 
 
 def legend_of(panels: Sequence[Panel]) -> str:
-    """What lines in the panels mean that no bar of colours tells."""
+    """Meaning of lines in the panels that no bar of colours has."""
     return LINES if vorticity in panels else ""
 
 

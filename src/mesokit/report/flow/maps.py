@@ -37,7 +37,7 @@ class Map:
 
 
 class SignedMap(Map):
-    """A map with lines around its extremes, by which the signs can be told apart in grey."""
+    """A map with lines around its extremes, by which the signs differ in grey."""
 
     def draw(self, ax: Any, flow: Flow, region: Region, reach: float) -> None:
         """The lines are those of values smoothed over some bins: noise would break them."""

@@ -96,7 +96,7 @@ def _clear(panels: Sequence[Panel], flows: Sequence[Flow], region: Region) -> bo
 
 
 def note(panels: Sequence[Panel], flow: Flow, clear: bool) -> str:
-    """What the caption says: the width of smoothing, and what would help where noise remains."""
+    """Words for the caption: the width of smoothing, and what would help where noise remains."""
     if flow.velocity is None or all(panel.NEEDS != "velocity" for panel in panels):
         return ""
     said = []

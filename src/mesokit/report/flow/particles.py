@@ -15,7 +15,7 @@ TITLE = "particles"
 MANY = 5000  # dots, beyond which a vector file holds an image of them
 COVERED = 0.08  # of the area by dots: less than hides where they are dense
 LARGEST, SMALLEST = 3.0, 0.5  # points
-THIN, CROWDED = 0.4, 0.4  # points of a bond; of the area by bonds: more cannot be told apart
+THIN, CROWDED = 0.4, 0.4  # points of a bond; of the area by bonds: more cannot be distinguished
 
 
 def reach(flow: Flow, region: Region) -> float:

@@ -57,7 +57,7 @@ class Section:
             )
 
     def note(self, how: str = "mean") -> str:
-        """What a 3D picture shows: a mean along the third axis, but a cut of the solids."""
+        """Caption of a 3D picture: a mean along the third axis, but a cut of the solids."""
         if self.third is None:
             return ""
         axis = AXES[self.third]

@@ -56,7 +56,7 @@ class Found(list["Source"]):
         self.axes, self.others, self.remedy = axes, list(dict.fromkeys(others)), remedy
 
     def lack(self, needs: str, kept: str) -> str:
-        """What was kept, and what to add to the case; of the case as it is, if it has the maps."""
+        """Maps that were kept, and what to add to the case, if it lacks the maps."""
         if not self.others or needs in AT_ONCE:
             return f"{kept}; add to the case and run it again: {self.remedy[needs]}"
         maps = " and ".join(",".join(axes) for axes in self.others)
@@ -89,7 +89,7 @@ def sources(
     trajectory: TrajectoryReader | State | None,
     view: View = ALL,
 ) -> Found:
-    """What there is to draw over two axes, best first. Unless said they are those of the first map,
+    """Sources of pictures over two axes, best first. Unless said they are those of the first map,
     or show how spheres fall.
 
     A map over the same axes in the other order is turned.

@@ -63,7 +63,7 @@ class SphereSource:
             repeats=self._repeats(float(self.time[frame])),
             time=float(self.time[frame]),
             plates=method_of(self.case).enclosure.moving_plates(self.case, float(self.time[frame])),
-            tells=colouring.tells(now) if colouring else "",
+            remark=colouring.remark(now) if colouring else "",
         )
         if box.dimension == 3:
             spheres = self._deep(spheres, self.towards * position[:, self.third])

@@ -81,7 +81,7 @@ def picture(
     notes = [section.note(how), mean, note(panels, flows[0], clear), legend_of(panels)]
     notes += [_few(case, panels, flows), when]
     for spheres in filter(None, (flow.spheres for flow in flows)):
-        notes += [f"at {at(spheres.time, 4)}", spheres.tells, spheres.note]
+        notes += [f"at {at(spheres.time, 4)}", spheres.remark, spheres.note]
     if any(panel.NEEDS in ("headings", "sites") for panel in panels):
         notes.append(f"at {at(flows[0].time, 6)}")
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)

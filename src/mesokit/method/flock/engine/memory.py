@@ -41,8 +41,8 @@ class Axes(NamedTuple):
 
 
 class Physics(NamedTuple):
-    """What moves birds: reach squared (float32), way of a step, whether they go with the old
-    heading, noise, () or (repulsion and cohesion,), and the solids."""
+    """Parameters of the motion: reach squared (float32), length of a step, whether birds go with
+    the old heading, noise, () or (repulsion and cohesion,), and the solids."""
 
     axes: Axes
     reach: np.float32
@@ -77,7 +77,7 @@ class Birds(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What birds see of one another, sorted by cell, all as whole numbers.
+    """Headings and places of birds, sorted by cell, all as whole numbers.
 
     places, headings (d, n); sums (rows, n): of headings in reach, of what cohesion adds, of the way
     out of the core, and how many birds are in reach.
@@ -146,7 +146,7 @@ def rows_of(dimension: int, cohesion: bool) -> int:
 
 @by_type
 def sum_rows(physics):
-    """The same, as a literal: the compiler then knows which rows of a strip are which."""
+    """The same as a literal, by which the compiler tells rows of a strip apart."""
     axes = physics.types[physics.fields.index("axes")]
     rows = rows_of(len(axes.types[0]), has_cohesion(physics))
     return lambda physics: rows

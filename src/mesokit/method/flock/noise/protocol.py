@@ -23,7 +23,7 @@ TURN, FIRST_HEADING = METHOD, METHOD + np.uint64(1)  # purposes of random number
 @family("noise", "rule", "mesokit.flock_noise")
 @component
 class Noise(ABC):
-    """What keeps birds from flying as the others do."""
+    """Noise by which birds fly in other directions than their neighbours."""
 
     @abstractmethod
     def kernel(self) -> Any:
@@ -40,7 +40,7 @@ class Noise(ABC):
 
 @generic
 def counted(noise):
-    """Whether `turned` asks for the number of birds in reach (a literal)."""
+    """True if `turned` needs the number of birds in reach (a literal)."""
 
 
 @generic

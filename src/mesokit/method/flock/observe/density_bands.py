@@ -29,8 +29,8 @@ class DensityBands(FlockObservable):
 
     At each sample it is turned so that the flock flies to the right, and moved so that the crest of
     the density, of its longest waves together, is in the middle: that band is then seen at rest,
-    others where they mostly are. A crest there is always; how large the waves are tells bands from
-    chance.
+    others where they mostly are. A crest there is always; bands differ from chance in the
+    size of the waves.
     """
 
     quantity: Literal["density-bands"] = tag("density-bands")

@@ -12,7 +12,7 @@ WALLS = Walls(("no-slip", "slip", "diffuse"), moving=True, turning=True, virtual
 
 
 def walls(case: Case) -> Iterator[str]:
-    """What every method checks; one rule for virtual particles."""
+    """Checks of every method; one rule for virtual particles."""
     yield from WALLS.problems(case)
     for i, wall in enumerate(case.walls):
         if wall.virtual != case.walls[0].virtual:

@@ -54,7 +54,7 @@ class CollisionRule(ABC):
 
     @abstractmethod
     def own_sums(self, dimension: int) -> tuple[str, ...]:
-        """What each of its sums is like: "momentum" (of a component), "mass" or "energy"."""
+        """Kind of each of its sums: "momentum" (of a component), "mass" or "energy"."""
 
     @abstractmethod
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
@@ -65,7 +65,7 @@ class CollisionRule(ABC):
         return kernel
 
     def problems(self, dimension: int) -> Iterator[str]:
-        """What is wrong with it in this dimension, key first."""
+        """The error in this dimension, key first; "" if there is none."""
         yield from ()
 
     def in_theory(self) -> dict[str, Any] | None:
@@ -104,7 +104,7 @@ class CollisionRule(ABC):
 
 
 class Cell(NamedTuple):
-    """What the particles of a cell add up to.
+    """Sums over the particles of a cell.
 
     Their number, mass and momentum, `energy` the sum of m v^2, `sums` those of the rule: its
     own sums, and after them the gradient of the one with number `gradient_of`, per cell of length.
@@ -132,7 +132,7 @@ def freedom(rule, n):
 
 @generic
 def coefficients(rule, thermostat, variate, chance, cell):
-    """What every particle of a cell needs in order to collide.
+    """Coefficients of a cell by which each of its particles collides.
 
     `cell` is what they add up to (see `Cell`), `variate` the thermostat's random number, `chance`
     two random words.

@@ -26,7 +26,7 @@ from mesokit.scalar.jit import by_type, scalar
 FIELDS = 3  # tag of messages
 
 
-class Field(NamedTuple):
+class NeighbourSums(NamedTuple):
     """A sum in every cell of the step, with how the cells lie.
 
     `term` is its place among the terms of a cell, `values` one number for each cell, `cells` their
@@ -40,10 +40,10 @@ class Field(NamedTuple):
 
 
 @where(fluid=lambda fluid: len(field_of(field_of(fluid, "cells"), "field")))
-def fill_field(worker, physics, fluid):
+def fill_neighbour_sums(worker, physics, fluid):
     """Store the sum of every cell if a rule needs its gradient; ends with a barrier."""
     cells = fluid.cells
-    term, width = cells.field.term, sums_length(len(physics.terms))
+    term, width = cells.neighbour_sums.term, sums_length(len(physics.terms))
     batches = (cells.number + LANES - 1) // LANES
     first, last = share(batches, worker.thread, worker.threads)
     # The integer sums of all threads as one float for each cell. Shares are those of `collide`,
@@ -54,7 +54,7 @@ def fill_field(worker, physics, fluid):
         for t in range(cells.sums.shape[0]):
             number += untangled(physics.energy, cells.sums[t, cell * width])[0]
             total += cells.sums[t, cell * width + 1 + term]
-        cells.field.values[cell] = from_fixed(total, number, physics.scales[term])
+        cells.neighbour_sums.values[cell] = from_fixed(total, number, physics.scales[term])
     share_field(worker, fluid)
     barrier(worker)
 
@@ -67,7 +67,7 @@ def share_field(worker, fluid):
     # The first thread sends the sums of own cells that lie in halos of partners (`given`), and
     # stores those of the cells in its own halo (`mine`): gradients need them before the collision.
     if worker.thread == 0:
-        shared, values = fluid.cells.shared, fluid.cells.field.values
+        shared, values = fluid.cells.shared, fluid.cells.neighbour_sums.values
         for j in range(len(shared.given)):
             shared.field_out[j, 0] = values[shared.given[j]]
         n = receive_rows(shared, 0, shared.field_in, shared.starts, FIELDS)

@@ -22,7 +22,7 @@ class Piece(NamedTuple):
 
 
 def pieces(first: int, last: int, beads: int = 1) -> Iterator[tuple[int, int]]:
-    """From `first` to before `last`, of whole molecules.
+    """Ranges of particles from `first` to before `last`, each of whole molecules.
 
     >>> list(pieces(0, 3))
     [(0, 3)]

@@ -57,13 +57,13 @@ class Displacement:
         return self.group.beads(wanted)
 
     def legend(self) -> str:
-        """What the theory is called in a figure."""
+        """Name of the theory in a figure."""
         if self.trapped:
             return "level in traps, by Boltzmann"
         if self.ballistic():
             return "free flight"
-        forgets = self.dissolved and self.alone() is not None  # a random solvent
-        label = "molecular chaos" if forgets else setting.chaos_label(self.case)
+        in_random_solvent = self.dissolved and self.alone() is not None  # a random solvent
+        label = "molecular chaos" if in_random_solvent else setting.chaos_label(self.case)
         return label if self.molecule is None else label.replace("molecular chaos", "Rouse")
 
     @property
@@ -160,7 +160,7 @@ class Displacement:
         molecules changes as the molecule turns, so that its centre is in no hurry either.
         """
         if self.trapped or (not self.case.fluid.collision.acts and self.molecule is None):
-            return np.inf  # it never gets far, or never forgets
+            return np.inf  # it never gets far, or keeps its velocity
         alone = free_diffusion(self.case, self.of, self.kind)
         start = 5 * alone * self.mass / self.case.fluid.kT if alone else 0.0
         if self.dissolved:

@@ -176,9 +176,9 @@ def rouse_note(case: Case) -> str:
 
 
 def friction_of(case: Case, kind: int | str = 1) -> float | None:
-    """kT over the diffusion coefficient of a bead alone; None where the fluid remembers it."""
+    """kT over the diffusion coefficient of a bead alone; None in a fluid with memory."""
     # beads of one molecule are stirred by the same flow, which in 2D is as large as the box: what
-    # tells them apart is what they do within a bond's length of each other
+    # their difference is what they do within a bond's length of each other
     if case.solutes is not None and case.solutes.solvent == "fluid":
         return None
     if case.solutes is not None or case.box.dimension == 2:

@@ -68,7 +68,7 @@ def stress_in_shear(case: Case) -> theory.ShearStress | None:
 
 
 def bond_viscosity(case: Case) -> float | None:
-    """What bonds add to the viscosity (dynamic) of slow flow; None without a theory.
+    """Part of bonds in the viscosity (dynamic) of slow flow; None without a theory.
 
     Of springs without a length of their own it is that of any flow.
     """

@@ -24,7 +24,7 @@ def of_fluid(case: Case, kind: int | str | None) -> bool:
 
 
 def molecule_of(case: Case, quantity: str = "this", kind: int | str = 1) -> Molecule:
-    """What the fluid is made of, or a kind of solutes. Raises CaseError if there is no such."""
+    """The molecule of the fluid, or a kind of solutes. Raises CaseError if there is no such."""
     solutes = case.solutes
     if solutes is None or of_fluid(case, kind):
         if case.fluid.molecule is None:
@@ -56,7 +56,7 @@ class Group(NamedTuple):
 
 
 def group_of(case: Case, of: str, kind: int | str | None = 1) -> Group:
-    """Those that an observable of "particles" (of the fluid), "beads", "centres" or "ends" follows.
+    """The group of an observable of "particles" (of the fluid), "beads", "centres" or "ends".
 
     Of particles `kind` is the number of a species, None all of them; of others None is the first of
     solutes, or in a fluid of molecules alone these.

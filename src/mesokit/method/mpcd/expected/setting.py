@@ -339,7 +339,7 @@ def surface_velocity(surface: object, component: int) -> float:
 
 
 def surface_speed(case: Case) -> float:
-    """Of the fastest place on a solid's surface: no place in the fluid that it drags is faster."""
+    """Speed of the fastest place on a solid; no place in the fluid that it drags is faster."""
     motion = solids_of(case).motion.values() if obstructed(case) else ()
     return max((speed for speed, _ in motion), default=0.0)
 

@@ -41,7 +41,7 @@ class Swing(NamedTuple):
 @family("body force", "rule", "mesokit.field", "SampledForce.from_function makes a force of one")
 @component
 class Force(ABC):
-    """What accelerates the fluid and all solutes."""
+    """Acceleration of the fluid and of all solutes."""
 
     acts: ClassVar[bool] = True
     steady: ClassVar[bool] = True  # whether it does not change in time
@@ -77,11 +77,11 @@ class Force(ABC):
         return {}
 
     def problems(self, closed: Collection[str]) -> Iterator[str]:
-        """What is wrong with it where walls close these axes, key first."""
+        """The error where walls close these axes, key first; "" if there is none."""
         yield from ()
 
     def misfits(self, size: tuple[int, ...]) -> Iterator[str]:
-        """What is wrong with it in a box of this size, key first."""
+        """The error in a box of this size, key first; "" if there is none."""
         yield from ()
 
     def notes(self, size: tuple[int, ...]) -> Iterator[str]:
@@ -97,7 +97,7 @@ class Force(ABC):
         return True
 
     def swing(self) -> Swing | None:
-        """What it is where it is a cosine in time; None for others."""
+        """The cosine in time that it is; None for others."""
         return None
 
     def instability(self, reynolds: float, size: tuple[int, ...], across: int) -> str:

@@ -136,7 +136,7 @@ class SampledForce(FromContents, Force):
 
     @functools.cached_property
     def values(self) -> Floats:
-        """What the file holds. Raises CaseError."""
+        """Content of the file. Raises CaseError."""
         try:
             found = array_of_contents(self.contents)
         except (ValueError, EOFError):

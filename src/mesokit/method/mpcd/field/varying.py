@@ -1,4 +1,4 @@
-"""What forces that change in time share: another force times a factor.
+"""Base of forces that change in time: another force times a factor.
 
 The factor is that of the middle of a timestep, and kept for it: exact for what grows evenly with
 time, second order in the timestep for all else. `field_at` brings it to a time before each step.
@@ -43,7 +43,7 @@ class Varying(Force):
         return {f"of.{key}": value for key, value in self.of.axes().items()}
 
     def problems(self, closed: Collection[str]) -> Iterator[str]:
-        """What is wrong with the force, and a force that does not act or varies itself."""
+        """Errors of the force; one that does not act or varies itself is an error too."""
         if not self.of.acts or isinstance(self.of, Varying):
             yield f"of.rule = {show(name_of(self.of))}: expected a force that acts, and is steady"
         yield from (f"of.{problem}" for problem in self.of.problems(closed))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
 from mesokit.case.component import component, tag
-from mesokit.method.mpcd.columns import forgets, temperature
+from mesokit.method.mpcd.columns import in_random_solvent, temperature
 from mesokit.method.mpcd.expected import setting
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.method import method_of
@@ -49,8 +49,11 @@ class ConservationAccumulator(BlockAccumulator):
         case = self.case
         self.dimension = case.box.dimension
         self.bonded = case.fluid.molecule is not None or case.solutes is not None
-        driven, self.forgets = setting.driven(case), forgets(case)  # of a random solvent
-        self.conserves_momentum = not (case.walls or driven or self.forgets)
+        driven, self.in_random_solvent = (
+            setting.driven(case),
+            in_random_solvent(case),
+        )  # of a random solvent
+        self.conserves_momentum = not (case.walls or driven or self.in_random_solvent)
         self.conserves_energy = self.conserves_momentum and not setting.isothermal(case)
         # number, momentum, the potential energy of bonds and pairs, kinetic energy, temperature
         width = 3 + self.dimension + self.bonded
@@ -136,12 +139,12 @@ class ConservationAccumulator(BlockAccumulator):
         expected[:, 0] = self.first[0]
         if self.conserves_momentum:
             expected[:, 1 : self.dimension + 1] = self.first[1 : self.dimension + 1]
-        elif not self.forgets and len(time):
+        elif not self.in_random_solvent and len(time):
             for axis in range(self.dimension):
                 expected[:, 1 + axis] = self._driven_momentum(axis, time - time[0])
         if self.conserves_energy and not self.bonded:
             expected[:, -2:] = self.first[-2:]
-        elif setting.isothermal(self.case) or self.forgets:
+        elif setting.isothermal(self.case) or self.in_random_solvent:
             energy, momentum = self._held_energy()
             warmth = temperature(self.case, int(self.first[0]), momentum, energy)
             expected[:, -2:] = energy, warmth
@@ -150,7 +153,7 @@ class ConservationAccumulator(BlockAccumulator):
     def _held_energy(self) -> tuple[float, Array]:
         """Kinetic energy and momentum of the steady flow of a fluid at kT, nan without theory."""
         case, d = self.case, self.dimension
-        mass, free = setting.superficial_mass(case), not (case.walls or self.forgets)
+        mass, free = setting.superficial_mass(case), not (case.walls or self.in_random_solvent)
         squares, momentum = 0.0, np.zeros(d)
         for axis in range(d):
             flow = setting.flow(case, axis)
@@ -164,7 +167,7 @@ class ConservationAccumulator(BlockAccumulator):
         return 0.5 * float(thermal + mass * squares), momentum
 
     def _not_steady(self) -> str:
-        """That samples began before the flow had built up, nothing where they did not."""
+        """Note that samples began before the flow had built up; "" where they did not."""
         found = method_of(self.case).steadiness.build_up(self.case)
         if found is None or found.had >= found.need:
             return ""
@@ -196,7 +199,9 @@ class ConservationAccumulator(BlockAccumulator):
                 kind, expected, note = "kinetic", 0.0, exact
             what = f"largest relative drift of {kind} energy"
             yield Comparison(what, drift, 0.0, expected, "", note)
-        if (setting.isothermal(self.case) or self.forgets) and not setting.driven(self.case):
+        if (setting.isothermal(self.case) or self.in_random_solvent) and not setting.driven(
+            self.case
+        ):
             mean, error = self.blocks.mean()[-1], self.blocks.error()[-1]
             note = setting.temperature_note(self.case)
             yield Comparison("temperature", mean, error, fluid.kT, "", note)

@@ -17,7 +17,7 @@ from mesokit.statistics import TimeSeries
 
 ROWS = 4096  # kept of the series in time
 CLEAR = 10.0  # standard deviations of noise above which there are domains at all
-LATE = 0.1  # part of the series that tells the size at the end
+LATE = 0.1  # part of the series that gives the size at the end
 
 
 @component

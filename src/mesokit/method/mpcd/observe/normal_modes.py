@@ -1,4 +1,4 @@
-"""Normal modes of molecules: how large they are, and how fast each forgets itself."""
+"""Normal modes of molecules: their size, and the time in which each decays."""
 
 from __future__ import annotations
 

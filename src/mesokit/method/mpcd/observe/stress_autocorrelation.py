@@ -22,7 +22,7 @@ from mesokit.statistics import MultipleTau
 
 NOISE = 1.0  # standard errors: the integral ends where G first falls below so many
 ROUGH = 0.2  # relative error that hides by how much a theory is approximate
-STRESS_TIMES = 4.0  # to which it goes where molecules relax as theory knows: all but 2 %
+STRESS_TIMES = 4.0  # to which it goes where molecules relax as in theory: all but 2 %
 FREQUENCIES = 40
 
 
@@ -95,7 +95,7 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
             extra=extra,
         )
 
-    def remembers(self) -> bool:
+    def has_memory(self) -> bool:
         """Whether the stress lasts longer than collisions make it: in molecules and solutes."""
         return self.case.fluid.molecule is not None or self.case.solutes is not None
 
@@ -117,7 +117,7 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
 
         `error`: relative to theory; a large one says nothing about the theory.
         """
-        if not self.remembers():
+        if not self.has_memory():
             return setting.caveat(self.case)
         slow, until = self.stress_time(), f"integral to t = {last:.3g} tau"
         if np.isnan(slow):
@@ -140,7 +140,7 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         weight[1:end] += widths[: end - 1] / 2
         density = setting.mass_density(self.case)
         value, spread = modulus.total(weight)
-        if not self.remembers() and (gas := setting.transport(self.case)) is not None:
+        if not self.has_memory() and (gas := setting.transport(self.case)) is not None:
             kinetic = gas.viscosity_kinetic * density  # which grows as kT
             spread = setting.with_start(self.case, spread, kinetic, self.runs)
         known = modes_of_stress(self.case)
@@ -152,7 +152,7 @@ class StressAutocorrelationAccumulator(BlockAccumulator):
         value, spread, what = value / density, spread / density, "viscosity from the integral"
         note = self.note(last, spread / expected)
         found = [Comparison(what, value, spread, expected, "a^2/tau", note)]
-        longest = last if self.remembers() else time[-1]
+        longest = last if self.has_memory() else time[-1]
         if longest < 2 * time[1]:
             return found, {}
         frequency = np.geomspace(1 / longest, 1 / time[1], FREQUENCIES)

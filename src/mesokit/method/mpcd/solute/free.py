@@ -35,7 +35,7 @@ def read_links(file: str, columns: int) -> tuple[tuple[int, ...], ...]:
 
 
 def problem(links: Links, length: int, columns: int) -> str | None:
-    """What is wrong with rows of bead numbers, if anything is."""
+    """The error in rows of bead numbers, "" if there is none."""
     seen = set()
     for n, row in enumerate(links, 1):
         where = f"row {n}, {list(row)}"

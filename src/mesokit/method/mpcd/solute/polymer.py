@@ -87,7 +87,7 @@ class Polymer:
 
 @component
 class Between:
-    """What acts between the beads of two kinds of solutes."""
+    """Interactions between the beads of two kinds of solutes."""
 
     kinds: Many[int | str] = param(
         doc="the two kinds, by name or number from 1", min_length=2, max_length=2

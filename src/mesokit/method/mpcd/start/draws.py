@@ -53,11 +53,11 @@ class Draws:
         self.ids = np.asarray(ids, np.int64)
 
     def of(self, rows: Any) -> Draws:
-        """What comes next, of some of them."""
+        """The same draws for some of the ids."""
         return Draws(self.seed, self.purpose, self.ids[rows], self.draw)
 
     def units(self, columns: int) -> Floats:
-        """So many numbers (n, columns) uniform in [0, 1) for each."""
+        """Numbers (n, columns) uniform in [0, 1) for each."""
         found = np.empty((len(self.ids), columns))
         draw_units(self.seed, self.purpose, self.ids, self.draw, found)
         self.draw += (columns + 1) // 2

@@ -219,12 +219,12 @@ def _whole(case: Case, there: Snapshot) -> Floats:
     closed = {*closed_axes(case.walls), *case.box.open}
     open_axes = np.array([axis not in closed for axis in case.box.axes])
     size, places = there.lengths[:d], (there.positions - there.low)[:, :d]
-    told = there.images is not None and bool(there.images[:, :d][:, open_axes].any())
-    if told:
+    counted = there.images is not None and bool(there.images[:, :d][:, open_axes].any())
+    if counted:
         assert there.images is not None
         places = places + np.where(open_axes, there.images[:, :d] * size, 0.0)
     separation = places[there.bonds[:, 1]] - places[there.bonds[:, 0]]
-    if told:
+    if counted:
         far = (np.abs(separation) > 0.5 * size)[:, open_axes].any(axis=1)
     else:
         separation -= np.where(open_axes, np.rint(separation / size) * size, 0.0)

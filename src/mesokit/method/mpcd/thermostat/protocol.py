@@ -18,7 +18,7 @@ from mesokit.theory.transport import Thermostat as Named
 @family("thermostat", "rule", "mesokit.thermostat")
 @component
 class Thermostat(ABC):
-    """What holds the temperature of the cells."""
+    """Thermostat of the cells."""
 
     acts: ClassVar[bool] = True  # whether it holds the temperature
     needs_energy: ClassVar[bool] = True  # whether `stretch` needs the kinetic energy

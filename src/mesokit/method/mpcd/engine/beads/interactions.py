@@ -1,6 +1,6 @@
 """The sums of a traversal over bonds, angles, pairs and walls: force, energy or virial.
 
-The class of `asked` picks one of these when the calling loop is compiled. Each adds its part to
+The class of `action` picks one of these when the calling loop is compiled. Each adds its part to
 `total`, a tuple: the force on a bead has as many numbers as there are axes, the energy one, and
 the virial none, as it goes to memory.
 """
@@ -43,7 +43,7 @@ class Energy(NamedTuple):
 class Virial(NamedTuple):
     """The vector between two beads times the impulse on the second in a time: (d, d) sums.
 
-    Each bond, angle and pair is counted once. That of walls is not asked for.
+    Each bond, angle and pair is counted once. That of walls is left out.
     """
 
     time: float
@@ -52,31 +52,33 @@ class Virial(NamedTuple):
 
 
 @generic
-def of_two(asked, total, potential, separation, i, j):
-    """Of beads i and j; `separation` leads from j to i. They are also met as j and i."""
+def of_two(action, total, potential, separation, i, j):
+    """The total with the part of beads i and j; `separation` leads from j to i. The pair comes a
+    second time as j and i."""
 
 
 @generic
-def of_three(asked, total, potential, before, after, role):
-    """Of two bonds in a row and the bead with that role in them: 0 the first, 2 the last."""
+def of_three(action, total, potential, before, after, role):
+    """The total with the part of two bonds in a row, for the bead with that role: 0 the first, 2
+    the last."""
 
 
 @generic
-def of_wall(asked, total, potential, near_wall, r):
-    """Of a bead at r and the nearest surface."""
+def of_wall(action, total, potential, near_wall, r):
+    """The total with the part of a bead at r and the nearest surface."""
 
 
 @of_two.register(BeadForce)
-def _(asked, total, potential, separation, i, j):
+def _(action, total, potential, separation, i, j):
     square = dot(separation, separation)
     _, force_over_r = central(potential, square)
     if breaks(potential, square):
-        note_broken(asked.faults, asked.step, min(i, j) + 1, max(i, j) + 1)
+        note_broken(action.faults, action.step, min(i, j) + 1, max(i, j) + 1)
     return added_scaled(total, force_over_r if j != i else 0.0, separation)
 
 
 @of_three.register(BeadForce)
-def _(asked, total, potential, before, after, role):
+def _(action, total, potential, before, after, role):
     _, first, last = bend(potential, before, after)
     middle = scaled(-1.0, added(first, last))
     own = first if role == 0 else (last if role == 2 else middle)
@@ -84,31 +86,31 @@ def _(asked, total, potential, before, after, role):
 
 
 @of_wall.register(BeadForce)
-def _(asked, total, potential, near_wall, r):
+def _(action, total, potential, near_wall, r):
     solid, reach = near_wall
     distance, out, surface, lever = facing(solid, reach, r)
     if distance >= reach:
         return total
     _, force_over_r = central(potential, distance * distance)
     force = scaled(force_over_r * distance, out)
-    add_recoil(asked.impulse, surface, lever, scaled(-asked.time, force), asked.scale)
+    add_recoil(action.impulse, surface, lever, scaled(-action.time, force), action.scale)
     return added(total, force)
 
 
 @of_two.register(Energy)
-def _(asked, total, potential, separation, i, j):
+def _(action, total, potential, separation, i, j):
     energy, _ = central(potential, dot(separation, separation))
     return added(total, (energy if j > i else 0.0,))
 
 
 @of_three.register(Energy)
-def _(asked, total, potential, before, after, role):
+def _(action, total, potential, before, after, role):
     energy, _, _ = bend(potential, before, after)
     return added(total, (energy if role == 1 else 0.0,))
 
 
 @of_wall.register(Energy)
-def _(asked, total, potential, near_wall, r):
+def _(action, total, potential, near_wall, r):
     solid, reach = near_wall
     distance, _, _, _ = facing(solid, reach, r)
     energy, _ = central(potential, distance * distance)
@@ -116,24 +118,24 @@ def _(asked, total, potential, near_wall, r):
 
 
 @of_two.register(Virial)
-def _(asked, total, potential, separation, i, j):
+def _(action, total, potential, separation, i, j):
     if j > i:
         _, force_over_r = central(potential, dot(separation, separation))
-        add_product(asked.tensor, asked.scale, asked.time * force_over_r, separation, separation)
+        add_product(action.tensor, action.scale, action.time * force_over_r, separation, separation)
     return total
 
 
 @of_three.register(Virial)
-def _(asked, total, potential, before, after, role):
+def _(action, total, potential, before, after, role):
     if role == 1:
         _, first, last = bend(potential, before, after)
-        add_product(asked.tensor, asked.scale, -asked.time, before, first)
-        add_product(asked.tensor, asked.scale, asked.time, after, last)
+        add_product(action.tensor, action.scale, -action.time, before, first)
+        add_product(action.tensor, action.scale, action.time, after, last)
     return total
 
 
 @of_wall.register(Virial)
-def _(asked, total, potential, near_wall, r):
+def _(action, total, potential, near_wall, r):
     return total
 
 

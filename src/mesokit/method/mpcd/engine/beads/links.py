@@ -22,23 +22,23 @@ class Kick(NamedTuple):
 
 
 @scalar
-def each_link(asked, molecule, work, lanes, zero):
-    """Apply `asked` to all links, in the lanes that hold molecules; true if a bond is broken."""
+def each_link(action, molecule, work, lanes, zero):
+    """Apply `action` to all links, in the lanes that hold molecules; true if a bond is broken."""
     bonds, angles, pairs = molecule.number
     broken, at = False, 0
     # Bonds, angles, pairs, in the order of one table. Each link is done for all lanes at once. A
     # lane has its own molecule, so the order of its sums of floats never depends on threads.
     for _ in range(bonds):
         a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
-        broken |= of_linked(asked, molecule.bond, a, b, lanes, zero)
+        broken |= of_linked(action, molecule.bond, a, b, lanes, zero)
         at += 2
     for _ in range(angles):
         a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
-        of_angle(molecule.angle, asked, a, b, work[linked(molecule, at + 2, zero)], lanes, zero)
+        of_angle(molecule.angle, action, a, b, work[linked(molecule, at + 2, zero)], lanes, zero)
         at += 3
     for _ in range(pairs):
         a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
-        of_pair(molecule.pair, asked, a, b, lanes, zero)
+        of_pair(molecule.pair, action, a, b, lanes, zero)
         at += 2
     return broken
 
@@ -50,37 +50,37 @@ def linked(molecule, at, zero):
 
 
 @where(angle=len)
-def of_angle(angle, asked, a, b, c, lanes, zero):
-    """Apply `asked` to the angle of beads a, b and c, if there is a potential."""
+def of_angle(angle, action, a, b, c, lanes, zero):
+    """Apply `action` to the angle of beads a, b and c, if there is a potential."""
     (potential,) = angle
-    of_angled(asked, potential, a, b, c, lanes, zero)
+    of_angled(action, potential, a, b, c, lanes, zero)
 
 
 @where(pair=len)
-def of_pair(pair, asked, a, b, lanes, zero):
-    """Apply `asked` to the pair of beads a and b, if there is a potential."""
+def of_pair(pair, action, a, b, lanes, zero):
+    """Apply `action` to the pair of beads a and b, if there is a potential."""
     (potential,) = pair
-    of_linked(asked, potential, a, b, lanes, zero)
+    of_linked(action, potential, a, b, lanes, zero)
 
 
 @generic
-def of_linked(asked, potential, a, b, lanes, zero):
-    """Apply `asked` to a bond or a pair; true if it is longer than its potential allows."""
+def of_linked(action, potential, a, b, lanes, zero):
+    """Apply `action` to a bond or a pair; true if it is longer than its potential allows."""
 
 
 @generic
-def of_angled(asked, potential, a, b, c, lanes, zero):
-    """Apply `asked` to the angle between the bonds from bead a to b and from b to c."""
+def of_angled(action, potential, a, b, c, lanes, zero):
+    """Apply `action` to the angle between the bonds from bead a to b and from b to c."""
 
 
 @of_linked.register(Kick)
-def _(asked, potential, a, b, lanes, zero):
+def _(action, potential, a, b, lanes, zero):
     d, broken = len(zero), False
     for i in range(WIDTH):
         separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
         square = dot(separation, separation)
         _, force_over_r = central(potential, square)
-        change = scaled(asked.factor * force_over_r, separation)
+        change = scaled(action.factor * force_over_r, separation)
         store_bead(a, i, d, added_scaled(load_bead(a, i, d, zero), -1.0, change))
         store_bead(b, i, d, added(load_bead(b, i, d, zero), change))
         broken |= breaks(potential, square)
@@ -88,31 +88,31 @@ def _(asked, potential, a, b, lanes, zero):
 
 
 @of_angled.register(Kick)
-def _(asked, potential, a, b, c, lanes, zero):
+def _(action, potential, a, b, c, lanes, zero):
     d = len(zero)
     for i in range(WIDTH):
         middle = load_bead(b, i, 0, zero)
         before = added_scaled(middle, -1.0, load_bead(a, i, 0, zero))
         after = added_scaled(load_bead(c, i, 0, zero), -1.0, middle)
         _, first, last = bend(potential, before, after)
-        first, last = scaled(asked.factor, first), scaled(asked.factor, last)
+        first, last = scaled(action.factor, first), scaled(action.factor, last)
         store_bead(a, i, d, added(load_bead(a, i, d, zero), first))
         store_bead(b, i, d, added_scaled(load_bead(b, i, d, zero), -1.0, added(first, last)))
         store_bead(c, i, d, added(load_bead(c, i, d, zero), last))
 
 
 @of_linked.register(Virial)
-def _(asked, potential, a, b, lanes, zero):
+def _(action, potential, a, b, lanes, zero):
     for i in range(lanes):
         separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
-        of_two(asked, (), potential, separation, 0, 1)
+        of_two(action, (), potential, separation, 0, 1)
     return False
 
 
 @of_angled.register(Virial)
-def _(asked, potential, a, b, c, lanes, zero):
+def _(action, potential, a, b, c, lanes, zero):
     for i in range(lanes):
         middle = load_bead(b, i, 0, zero)
         before = added_scaled(middle, -1.0, load_bead(a, i, 0, zero))
         after = added_scaled(load_bead(c, i, 0, zero), -1.0, middle)
-        of_three(asked, (), potential, before, after, 1)
+        of_three(action, (), potential, before, after, 1)

@@ -74,22 +74,22 @@ def _(moving, step, box, physics, time):
 
 
 @by_type
-def kick_bead(asked, beads, i, box, physics, time):
+def kick_bead(action, beads, i, box, physics, time):
     """Change of the velocity of a bead by the forces on it."""
     return _kick_from_outside if len(field_of(beads, "external")) else _kick
 
 
-def _kick(asked, beads, i, box, physics, time):
+def _kick(action, beads, i, box, physics, time):
     r, v = state.load_place(beads, i, physics.zero), state.load_velocity(beads, i, physics.zero)
-    force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
+    force = each_on_bead(action, scaled(0.0, physics.zero), beads, i, r, box)
     v = added_scaled(v, time * state.inverse_mass_of(beads, i), force)
     state.store_velocity(beads, i, accelerated(physics.field, time, r, v))
 
 
-def _kick_from_outside(asked, beads, i, box, physics, time):
+def _kick_from_outside(action, beads, i, box, physics, time):
     """Half of the change, a turn in the magnetic field, and the other half (Boris 1970)."""
     r, v = state.load_place(beads, i, physics.zero), state.load_velocity(beads, i, physics.zero)
-    force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
+    force = each_on_bead(action, scaled(0.0, physics.zero), beads, i, r, box)
     force = from_outside(beads.external, force, i, r)
     half = 0.5 * time
     v = added_scaled(v, half * state.inverse_mass_of(beads, i), force)

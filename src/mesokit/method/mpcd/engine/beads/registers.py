@@ -25,7 +25,7 @@ def bead_size(d):
 
 @scalar
 def bead_at(number, zero):
-    """The part of the work space that holds the rows of one bead (see `strips.layout.strip_at`)."""
+    """The part of the work space that holds the rows of one bead (see `loops.layout.strip_at`)."""
     size = bead_size(len(zero))
     return slice(number * size, (number + 1) * size)
 

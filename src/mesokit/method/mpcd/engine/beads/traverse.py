@@ -33,59 +33,59 @@ def kind_of_pair(kinds, i, j):
 
 
 @by_type
-def of_chosen(potential, kind, asked, total, separation, i, j):
+def of_chosen(potential, kind, action, total, separation, i, j):
     """`of_two`, of the potential of that kind."""
     if potential.instance_class is Several:
         return _of_several
-    return lambda potential, kind, asked, total, separation, i, j: of_two(
-        asked, total, potential, separation, i, j
+    return lambda potential, kind, action, total, separation, i, j: of_two(
+        action, total, potential, separation, i, j
     )
 
 
-def _of_several(potential, kind, asked, total, separation, i, j):
+def _of_several(potential, kind, action, total, separation, i, j):
     row = row_of(potential, kind)
     if row >= 0:
-        return of_two(asked, total, potential_at(potential, row), separation, i, j)
-    return of_others(potential.others, kind, asked, total, separation, i, j)
+        return of_two(action, total, potential_at(potential, row), separation, i, j)
+    return of_others(potential.others, kind, action, total, separation, i, j)
 
 
 @where("total", others=len)
-def of_others(others, kind, asked, total, separation, i, j):
+def of_others(others, kind, action, total, separation, i, j):
     """`of_chosen`, of the potentials of the other classes; no force where there are none."""
-    return of_chosen(others[0], kind, asked, total, separation, i, j)
+    return of_chosen(others[0], kind, action, total, separation, i, j)
 
 
 @by_type
-def of_chosen_angle(potential, kind, asked, total, before, after, role):
+def of_chosen_angle(potential, kind, action, total, before, after, role):
     """`of_three`, of the potential of that kind."""
     if potential.instance_class is Several:
         return _of_several_angles
-    return lambda potential, kind, asked, total, before, after, role: of_three(
-        asked, total, potential, before, after, role
+    return lambda potential, kind, action, total, before, after, role: of_three(
+        action, total, potential, before, after, role
     )
 
 
-def _of_several_angles(potential, kind, asked, total, before, after, role):
+def _of_several_angles(potential, kind, action, total, before, after, role):
     row = row_of(potential, kind)
     if row >= 0:
-        return of_three(asked, total, potential_at(potential, row), before, after, role)
-    return of_other_angles(potential.others, kind, asked, total, before, after, role)
+        return of_three(action, total, potential_at(potential, row), before, after, role)
+    return of_other_angles(potential.others, kind, action, total, before, after, role)
 
 
 @where("total", others=len)
-def of_other_angles(others, kind, asked, total, before, after, role):
+def of_other_angles(others, kind, action, total, before, after, role):
     """`of_chosen_angle`, of the potentials of the other classes."""
-    return of_chosen_angle(others[0], kind, asked, total, before, after, role)
+    return of_chosen_angle(others[0], kind, action, total, before, after, role)
 
 
 @scalar
-def each_on_bead(asked, total, beads, i, r, box):
+def each_on_bead(action, total, beads, i, r, box):
     """Add all that acts on bead i at r to the total."""
     given = beads.potentials
-    total = each_bond(given.bond, asked, total, beads, i, r)
-    total = each_angle(given.angle, asked, total, beads, i, r)
-    total = each_pair(given.pair, asked, total, beads, i, r, box)
-    return at_wall(given.wall, asked, total, beads, r)
+    total = each_bond(given.bond, action, total, beads, i, r)
+    total = each_angle(given.angle, action, total, beads, i, r)
+    total = each_pair(given.pair, action, total, beads, i, r, box)
+    return at_wall(given.wall, action, total, beads, r)
 
 
 @elementwise
@@ -95,19 +95,19 @@ def nothing(total):
 
 
 @where("total", bond=len)
-def each_bond(bond, asked, total, beads, i, r):
+def each_bond(bond, action, total, beads, i, r):
     """Add all bonds of bead i."""
     (potential,), part = bond, nothing(total)
     for n in range(beads.bond_starts[i], beads.bond_starts[i + 1]):
         j = beads.bonds[n]
         separation = added_scaled(r, -1.0, load_place(beads, j, r))
         kind = kind_of_bond(beads.kinds, n)
-        part = of_chosen(potential, kind, asked, part, separation, i, j)
+        part = of_chosen(potential, kind, action, part, separation, i, j)
     return added(total, part)
 
 
 @where("total", angle=len)
-def each_angle(angle, asked, total, beads, i, r):
+def each_angle(angle, action, total, beads, i, r):
     """Add all angles with bead i."""
     (potential,), part = angle, nothing(total)
     for n in range(beads.angle_starts[i], beads.angle_starts[i + 1]):
@@ -116,12 +116,12 @@ def each_angle(angle, asked, total, beads, i, r):
         c = load_place(beads, beads.angles[n, 2], r)
         before, after = added_scaled(b, -1.0, a), added_scaled(c, -1.0, b)
         kind, role = kind_of_angle(beads.kinds, n), beads.angles[n, 3]
-        part = of_chosen_angle(potential, kind, asked, part, before, after, role)
+        part = of_chosen_angle(potential, kind, action, part, before, after, role)
     return added(total, part)
 
 
 @where("total", pair=len)
-def each_pair(pair, asked, total, beads, i, r, box):
+def each_pair(pair, action, total, beads, i, r, box):
     """Add all pairs of bead i: those on its list or, if the list is crowded, with all beads."""
     (potential,), (lists,), part = pair, beads.neighbours, nothing(total)
     count, around = lists.count[i], number_of(beads.halo, len(lists.count), AROUND)
@@ -129,12 +129,12 @@ def each_pair(pair, asked, total, beads, i, r, box):
         j = lists.near[i, n] if count != CROWDED else bead_of(beads.halo, AROUND, n)
         separation = apart(box, load_place(beads, j, r), r)
         kind = kind_of_pair(beads.kinds, i, j)
-        part = of_chosen(potential, kind, asked, part, separation, i, j)
+        part = of_chosen(potential, kind, action, part, separation, i, j)
     return added(total, part)
 
 
 @where("total", wall=len)
-def at_wall(wall, asked, total, beads, r):
+def at_wall(wall, action, total, beads, r):
     """Add the nearest surface."""
     (potential,) = wall
-    return of_wall(asked, total, potential, beads.near_wall, r)
+    return of_wall(action, total, potential, beads.near_wall, r)

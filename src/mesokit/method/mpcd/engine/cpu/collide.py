@@ -146,7 +146,7 @@ def settle_batch(worker, counter, physics, fluid, which, count):
     # certain.
     for i in range(LANES):
         found, cell = load_scratch(totals, i, none), cell_at(which, i)
-        gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
+        gradient, key = gradient_at(cells.neighbour_sums, cell), key_of(cells.shared, cell)
         answer, sure = needs_of_cell(physics, counter, key, found, gradient, False)
         doubtful[i] = 1 - np.int64(sure)
         in_doubt |= doubtful[i]
@@ -156,7 +156,7 @@ def settle_batch(worker, counter, physics, fluid, which, count):
     for i in range(count if in_doubt != 0 else 0):
         if doubtful[i] != 0:
             found, cell = load_scratch(totals, i, none), cell_at(which, i)
-            gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
+            gradient, key = gradient_at(cells.neighbour_sums, cell), key_of(cells.shared, cell)
             store_scratch(rows, i, sure_needs(physics, counter, key, found, gradient))
 
 

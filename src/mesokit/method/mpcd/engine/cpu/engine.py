@@ -283,10 +283,10 @@ class CPU:
 
     @property
     def wall_tally(self) -> Tally:
-        """The same, exact, all in a row."""
+        """Exact sums of `wall_impulse` since the end of the warm-up."""
         return self.readings.wall_tally
 
     @property
     def wall_steps(self) -> int:
-        """How many steps that was."""
+        """Number of steps in `wall_tally`."""
         return self.readings.wall_steps

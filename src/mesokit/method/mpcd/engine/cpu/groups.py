@@ -35,7 +35,7 @@ class Now(NamedTuple):
 
 @by_address("filling")  # of ranks, whose particles come and go
 class Particles(NamedTuple):
-    """The fluid's particles, strip by strip (see `strips.layout`); lanes are counted through."""
+    """The fluid's particles, strip by strip (see `loops.layout`); lanes are counted through."""
 
     data: Any  # positions, velocities, and masses where they differ
     cell: Any  # (lanes,) number of each particle's cell
@@ -52,8 +52,8 @@ class Cells(NamedTuple):
     number: int
     coefficients: Any  # a record for each cell: what its particles need to collide
     sums: Any  # (threads, ...) fixed-point sums over the particles of each cell
-    field: tuple  # one of these sums in all cells, where the rule needs its gradient, or ()
-    shared: Any  # with other ranks (`ranks.messages.shared.Shared`), or ()
+    neighbour_sums: tuple  # one of these sums in all cells, if the rule needs its gradient, or ()
+    shared: Any  # with other ranks (`domains.messages.shared.Shared`), or ()
 
 
 class Scratch(NamedTuple):

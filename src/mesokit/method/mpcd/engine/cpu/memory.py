@@ -15,7 +15,7 @@ from mesokit.loops import layout
 from mesokit.loops.layout import LANES, zeros
 from mesokit.method.mpcd.engine.beads.allocate import allocate_beads
 from mesokit.method.mpcd.engine.beads.registers import bead_size
-from mesokit.method.mpcd.engine.cell_gradient import Field
+from mesokit.method.mpcd.engine.cell_gradient import NeighbourSums
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.groups import (
     Cells,
@@ -207,7 +207,7 @@ class Memory:
         own = len(numbers.case.fluid.collision.own_sums(numbers.dimension))
         closed = tuple(int(shut) for shut in numbers.closed)
         term, values = len(numbers.scales) - own + wanted, zeros(self.number_of_cells)
-        return Field(term, values, tuple(self.cells), closed)
+        return NeighbourSums(term, values, tuple(self.cells), closed)
 
     def _walls(self) -> Walls:
         numbers, virtual = self.numbers, self.numbers.virtual

@@ -17,7 +17,7 @@ class Physics(NamedTuple):
     field: tuple
     solid: tuple
     masses: tuple  # (mass,) or () for a row of masses in each strip
-    energy: tuple  # how cells learn their kinetic energy
+    energy: tuple  # how the kinetic energy of cells is found
     timestep: float
     kT: float
     molecule: Any  # what holds the beads of molecules together, or () for single particles

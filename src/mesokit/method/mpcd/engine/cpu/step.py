@@ -6,7 +6,7 @@ from mesokit.loops.clock import BEADS, CELLS, FINISH, START, SWEEP, lap
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.coupling import answer_beads, join_beads
 from mesokit.method.mpcd.engine.beads.flight import move_solutes
-from mesokit.method.mpcd.engine.cell_gradient import fill_field
+from mesokit.method.mpcd.engine.cell_gradient import fill_neighbour_sums
 from mesokit.method.mpcd.engine.cpu.collide import collide_cells
 from mesokit.method.mpcd.engine.cpu.grid import moved_grid
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM, Now
@@ -63,7 +63,7 @@ def move_beads(worker, now, physics, fluid, beads):
 def fill_walls(worker, now, physics, fluid, walls):
     """Virtual particles at t + dt in the cells that walls cut, and their part in the sums of these.
 
-    They are drawn all of a cell at once where the collision rule cannot tell, else one by one.
+    They are drawn all of a cell at once where the collision rule does not give it, else one by one.
     """
     if len(field_of(walls, "virtual")) == 0 or len(field_of(walls, "top_up")) > 0:
         return lambda *_: None
@@ -91,7 +91,7 @@ def step(worker, now, physics, fluid, beads, walls):
     exchange_sums(worker, now, physics, fluid, beads)  # ranks: sums to the owners of cells
     follow_flow(worker, now, physics, fluid, walls)  # flow near surfaces, for the next step
     top_up_walls(worker, now, physics, fluid, walls)  # up to the mean number of a cell
-    fill_field(worker, physics, fluid)  # sums for gradients over neighbouring cells
+    fill_neighbour_sums(worker, physics, fluid)  # sums for gradients over neighbouring cells
     join_beads(worker, now, physics, fluid, beads)  # cells with solutes: sums of both
     send_coefficients(worker, now, physics, fluid, beads, walls)  # ranks: to partners
     collide_cells(worker, now, physics, fluid)  # thermostat, rule at t + dt: coefficients

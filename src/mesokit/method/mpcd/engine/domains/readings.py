@@ -101,11 +101,11 @@ class SharedReadings(Readings):
         return self.reduced(bits).view(float)
 
     def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Observed:
-        asked = np.arange(self.n) if ids is None else np.asarray(ids, np.int64)
-        here, which = self.own_rows(asked)
+        wanted = np.arange(self.n) if ids is None else np.asarray(ids, np.int64)
+        here, which = self.own_rows(wanted)
         seen = self.seen_at(self.memory.places[which], unwrapped)
         columns = [seen.positions, seen.velocities, seen.images.astype(float)]
-        rows = self.together(here, np.concatenate(columns, axis=1), len(asked))
+        rows = self.together(here, np.concatenate(columns, axis=1), len(wanted))
         r, v, images = np.split(rows, 3, axis=1)
         return Observed(r, v, images.astype(np.int32))
 

@@ -11,7 +11,7 @@ from mesokit.method.mpcd.engine.measure.readings import between
 
 
 class EarlierRows:
-    """Positions of whole molecules, or velocities (n, d), of a state: made when they are asked for.
+    """Positions of whole molecules, or velocities (n, d), of a state, made when first read.
 
     `state` has its arrays by name, which may lie in a file. Raises ValueError if they are not those
     of this fluid.

@@ -84,7 +84,7 @@ class Readings:
         return self.joined(halves(rows), scale)
 
     def joined(self, parts: NDArray[np.int64], scale: Any) -> Floats:
-        """The same of the halves of sums."""
+        """Sums over all ranks, from their halves (see `total`), over the scale."""
         return joined(self.reduced(parts), scale)
 
     def added(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -332,7 +332,7 @@ class Readings:
 def between(
     r: Floats, image: NDArray, first: NDArray, second: NDArray, size: Floats, box: tuple
 ) -> Floats:
-    """From some particles to others, whatever images of a box of this size they lie in."""
+    """Vectors (n, d) from the first particles to the second, with the images in which they lie."""
     boxes = image[second] - image[first]
     separation: Floats = r[second] - r[first] + boxes * size
     if isinstance(box, SLIDING):

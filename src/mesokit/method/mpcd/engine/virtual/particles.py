@@ -21,7 +21,7 @@ class VirtualParticles(NamedTuple):
     masses: those of mixtures.
     data, cell, number, term (threads, ...), filled (threads,): the virtual particles of this step.
     per_cell: CellParticles, or () where they come one by one.
-    seen: Seen, or () where all cells are those of one rank.
+    seen: FlowAtSurface, or () where all cells are those of one rank.
     """
 
     density: float

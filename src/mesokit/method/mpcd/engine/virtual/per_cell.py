@@ -118,12 +118,12 @@ def count_batch(numbers, counter, work):
 def draw_batch(physics, numbers, counter, work):
     """Thermal velocity of one particle, and energy of all about their mean; -1 where in doubt."""
     zero = physics.zero
-    (m,), asked = physics.masses, needs_energy(physics.energy)
+    (m,), with_energy = physics.masses, needs_energy(physics.energy)
     spread = math.sqrt(physics.kT / m)
     for i in range(LANES):
         a, b, c, e = words(counter, VIRTUAL_VELOCITY, numbers[i], 0)
         store_scratch(work, THERMAL * SCRATCH_ROW + i, scaled(spread, normals(zero, a, b, c, e)))
-    for i in range(LANES if asked else 0):
+    for i in range(LANES if with_energy else 0):
         _, _, a, b = words(counter, VIRTUAL_NUMBER, numbers[i], 0)
         freedom = max(len(zero) * (work[NUMBER * SCRATCH_ROW + i] - 1.0), 0.0)
         value, sure = likely(a, b, freedom)

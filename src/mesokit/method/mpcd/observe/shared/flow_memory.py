@@ -15,76 +15,81 @@ from mesokit.observe.shared.short_run import ENOUGH, of_relaxations
 from mesokit.seam.method import BuildUp
 from mesokit.statistics import Blocks
 
-LONGEST = 100.0  # relaxation time that a run may show, in lengths of the run with its warm-up
+LARGEST = 100.0  # relaxation time that is searched for, over the time of the run and its warm-up
 
 
 class FlowMemory(NamedTuple):
-    """A run beside the relaxation time of the momentum of its flow.
+    """Relaxation time of the momentum of a flow, and the length of a run beside it.
 
-    time: the relaxation time; times: length of the run in such times, both nan where no force
-    gives them. least: least standard error of the mean momentum: that of a thermal momentum, of
-    variance M kT, whose correlation falls as an exponential. runs: how many are pooled, each of
-    that length. longest: the relaxation time of a momentum two such errors larger.
+    time: the relaxation time; relaxations: length of the run over it, both nan where no force
+    gives them. least: least standard error of the mean momentum, which is that of a thermal
+    momentum of variance M kT with an exponential correlation. runs: number of pooled runs, each of
+    that length. upper: relaxation time of a momentum that is two such errors larger.
     """
 
     time: float
-    times: float
+    relaxations: float
     least: float
     runs: int = 1
-    longest: float = np.nan
+    upper: float = np.nan
 
     @property
     def note(self) -> str:
         """Caveat of a run that is short against the relaxation time."""
-        if not self.times < ENOUGH:
+        if not self.relaxations < ENOUGH:
             return ""
-        return of_relaxations(self.times, self.runs)
+        return of_relaxations(self.relaxations, self.runs)
 
 
 def flow_memory(case: Case, axis: int, momentum: float, blocks: Blocks, every: int) -> FlowMemory:
-    """That of a run of a mean momentum along an axis, with a sample every so many steps.
+    """Memory of the flow along an axis from the mean momentum of a run, sampled at intervals.
 
-    A force drives the flow to the momentum M g t that it gives in the relaxation time t: exact in
-    slow flow, for the response to a force is the integral of the momentum's correlation (Kubo
-    1957). A flow from rest has not all of it yet: t is that of an exponential approach whose mean
-    over the samples is the momentum seen.
+    The momentum of a steady flow is M g t with the mass M, the acceleration g and the relaxation
+    time t: exact in slow flow, where the response to a force is the integral of the momentum's
+    correlation (Kubo 1957). A flow from rest approaches it as an exponential: then t is the time
+    for which the mean of that approach over the samples is the measured momentum.
     """
     mass = setting.mass_density(case) * free_volume(case)
     acceleration = float(setting.uniform_acceleration(case)[axis])
-    given = momentum / (mass * acceleration) if acceleration else -1.0
+    # the time M g t / (M g) of a steady flow; without walls or against the force there is none
+    apparent = momentum / (mass * acceleration) if acceleration else -1.0
     length = blocks.count / blocks.series * every * case.fluid.timestep
-    if not (case.walls and given > 0 and length > 0):
+    if not (case.walls and apparent > 0 and length > 0):
         return FlowMemory(np.nan, np.nan, 0.0)
-    had = np.inf if case.fluid.start.run is not None else case.run.warmup * case.fluid.timestep
-    time = _relaxation(given, had, length)
-    times = length / time
-    least = float((mass * case.fluid.kT * kept(times) / blocks.series) ** 0.5)
-    more = given + 2 * least / abs(mass * acceleration)
-    return FlowMemory(time, times, least, blocks.series, _relaxation(more, had, length))
+    flowed = case.run.warmup * case.fluid.timestep  # before the first sample
+    if case.fluid.start.run is not None:
+        flowed = np.inf
+    time = _relaxation(apparent, flowed, length)
+    relaxations = length / time
+    least = float((mass * case.fluid.kT * kept(relaxations) / blocks.series) ** 0.5)
+    more = apparent + 2 * least / abs(mass * acceleration)
+    return FlowMemory(time, relaxations, least, blocks.series, _relaxation(more, flowed, length))
 
 
-def _relaxation(given: float, had: float, length: float) -> float:
-    """Time t whose t (1 - mean of exp(-s/t) over s from had to had + length) is the time given, at
-    most `LONGEST` of the run.
+def _relaxation(apparent: float, flowed: float, length: float) -> float:
+    """Relaxation time t of a flow that began a time `flowed` before samples of a length.
+
+    It solves apparent = t (1 - t/length (exp(-flowed/t) - exp(-(flowed + length)/t))) and is at
+    most `LARGEST` times both together.
 
     >>> [round(_relaxation(t, 100.0, 50.0), 1) for t in (1.0, 79.0, 124.9)]
     [1.0, 126.1, 15000.0]
     """
-    longest = LONGEST * (had + length)
+    largest = LARGEST * (flowed + length)
 
     def missing(time: float) -> float:
-        left = math.exp(-had / time) * -math.expm1(-length / time) * time / length
-        return time * (1 - left) - given
+        left = math.exp(-flowed / time) * -math.expm1(-length / time) * time / length
+        return time * (1 - left) - apparent
 
-    if math.isinf(had) or missing(given) >= 0:
-        return given
-    return longest if missing(longest) < 0 else float(brentq(missing, given, longest))
+    if math.isinf(flowed) or missing(apparent) >= 0:
+        return apparent
+    return largest if missing(largest) < 0 else float(brentq(missing, apparent, largest))
 
 
 def build_up_of(memory: FlowMemory, case: Case) -> BuildUp | None:
-    """Build-up of the flow from rest, by the largest momentum that it may well have; None where
+    """Build-up of the flow from rest, by the upper relaxation time; None where
     no force gives it."""
     if np.isnan(memory.time) or case.fluid.start.run is not None or not case.fluid.force.steady:
         return None
-    steps = memory.longest / case.fluid.timestep
+    steps = memory.upper / case.fluid.timestep
     return BuildUp(steps, math.ceil(TIMES * steps), case.run.warmup)

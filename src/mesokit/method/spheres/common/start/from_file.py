@@ -21,7 +21,7 @@ ROUNDING = 1e-5  # relative, of numbers in single precision and in texts
 
 @component
 class FileStart(SphereStart):
-    """The last frame of a GSD file, or a LAMMPS data file: places, and what else it tells.
+    """The last frame of a GSD file, or a LAMMPS data file: places, and all else in it.
 
     Velocities and spins that it has not are drawn.
     """

@@ -26,7 +26,7 @@ NEIGHBOURS = "approximate: spheres that meet again, measured for disks at phi = 
 class CollisionRate(OfSpheres):
     """Collisions of a sphere per time: with others, with walls, and made elastic by a contact time.
 
-    A collision of two counts for both; what a contact time does is told without walls. The mean
+    A collision of two counts for both; the effect of a contact time leaves out walls. The mean
     free path is the mean speed over the rate with others. Theory is that of a uniform gas of equal
     spheres with Maxwell's velocities: the rate that belongs to the pressure, at the temperature as
     it is in time.
@@ -69,7 +69,7 @@ class CollisionRateAccumulator(BlockAccumulator):
             known[2] = known[0] * theory.elastic_share(float(value[0]), contact_time)
             least, known[2], rare = self.of_few(float(value[2]), float(known[2]))
             error[2] = max(error[2], least)
-        # that of a contact time counts walls as well, which are not told apart
+        # that of a contact time counts walls as well, which are not counted apart
         shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
         drawn = 2 if self.case.walls else 1
         note = "" if spheres.collision.elastic else "approximate: molecular chaos"

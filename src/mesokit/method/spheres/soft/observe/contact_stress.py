@@ -32,7 +32,7 @@ class ContactStress(OfSpheres):
 
     The pressure of forces is the virial of pairs, sum r F over d times the volume of the box.
     Beside it are, of stiff elastic spheres in a box without walls, the pressure of hard ones, and
-    of a bed in gravity what the weight above each height asks for: the momentum flux along gravity,
+    of a bed in gravity what the weight above each height needs: the momentum flux along gravity,
     over the box, is m g times the sum of the heights above those of spheres on the floor, as long
     as none is thrown against the ceiling.
     """

@@ -31,13 +31,13 @@ class Column(NamedTuple):
 
 
 class WithCount(NamedTuple):
-    """In the integer that counts the particles; fixed-point units per unit of energy."""
+    """The energy shares the integer that counts the particles; `scale`: its units per energy."""
 
     scale: float
 
 
 def with_count(thermal: float, density: float) -> WithCount:
-    """As many bits as leave room for cells of `SPARE` times `density` thermal energies."""
+    """Scale with room for a cell of `SPARE` times `density` thermal energies."""
     return WithCount(2.0 ** math.floor(COUNT_SHIFT - math.log2(SPARE * thermal * density)))
 
 

@@ -55,18 +55,18 @@ def _mass_term(masses, m):
 
 @by_type
 def read_sums(physics, found):
-    """Sums of a cell as floats: its number, mass, momentum, sum of m v^2 (0 if not asked), and the
+    """Sums of a cell as floats: its number, mass, momentum, sum of m v^2 (0 if not needed), and the
     rule's own sums."""
     d, uniform = len(field_of(physics, "zero")), len(field_of(physics, "masses")) == 1
-    asked = field_of(physics, "energy").instance_class is Column
+    needed = field_of(physics, "energy").instance_class is Column
     at_energy = d if uniform else d + 1
-    own = at_energy + 1 if asked else at_energy
+    own = at_energy + 1 if needed else at_energy
 
     def read(physics, found):
         n, with_count = untangled(physics.energy, found[0])
         values = _floats(n, found, physics.scales)
         mass = max(float(n), 1.0) * physics.masses[0] if uniform else max(values[d], 1e-300)
-        m_v_squared = values[at_energy] if asked else with_count
+        m_v_squared = values[at_energy] if needed else with_count
         return Cell(float(n), mass, values[:d], m_v_squared, values[own:])
 
     return read

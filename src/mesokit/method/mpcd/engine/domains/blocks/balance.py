@@ -122,9 +122,9 @@ class Load:
         self.block, self.comm = block, comm
         self.cells = np.rint(cells * 1e9).astype(np.int64).reshape(block.lengths[::-1])
 
-    def layers(self, asked: Sequence[tuple[Block, int]]) -> list[NDArray[np.float64]]:
+    def layers(self, wanted: Sequence[tuple[Block, int]]) -> list[NDArray[np.float64]]:
         """The work of all ranks in the layers of some blocks across an axis."""
-        parts = [self._own(block, axis) for block, axis in asked]
+        parts = [self._own(block, axis) for block, axis in wanted]
         together = np.concatenate([np.zeros(0, np.int64), *parts])
         total = np.empty_like(together)
         self.comm.Allreduce(together, total)
