@@ -53,7 +53,7 @@ def _can_copy() -> bool:
 def _has_a_core() -> bool:
     if sys.platform != "linux" or "mpi4py.MPI" in sys.modules:
         return False
-    return len(os.sched_getaffinity(0)) > 1
+    return hasattr(os, "sched_getaffinity") and len(os.sched_getaffinity(0)) > 1
 
 
 def _compile(compile: Callable[[], Any], reported: int) -> None:
