@@ -116,7 +116,7 @@ def test_forces_on_plates_are_those_of_wall_stress(make_case):
     case = make_case((4, 8), [Forces()], walls, **PUSHED)
     stress = WallStress().accumulator(make_case((4, 8), [WallStress()], walls, **PUSHED))
     expected = Forces().accumulator(case).expected()
-    assert expected[:, :2] == pytest.approx(4 * stress.expected())
+    assert expected[:, :2] == pytest.approx(4 * stress.result().expected)
 
 
 def test_drag_lift_and_reynolds_number_of_a_given_speed(make_case):

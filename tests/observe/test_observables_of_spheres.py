@@ -20,6 +20,7 @@ from mesokit import (
     theory,
 )
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.expected.enskog import pair_rate
 from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES_ALONE
 from mesokit.method.spheres.common.observe.cluster_size import cluster_sizes
 from mesokit.method.spheres.hard.observe import OBSERVABLES as OF_HARD_SPHERES
@@ -114,9 +115,8 @@ def test_rates_are_those_of_the_counts():
 
 def test_expected_rate_is_enskogs():
     case = hard([CollisionRate()], number=None, packing_fraction=0.2, size=(60, 60))
-    accumulator = CollisionRate().accumulator(case)
     rate = theory.enskog_rate(case.particles / 3600, 1.0, 1.0, 0.2, 2)
-    assert accumulator.expected(1.0) == pytest.approx(rate, rel=2e-3)
+    assert pair_rate(case, 1.0) == pytest.approx(rate, rel=2e-3)
 
 
 @pytest.mark.parametrize("size", [(40, 40), (16, 16, 16)])

@@ -139,11 +139,11 @@ class _MachineCode:
 
     def end_turn(self) -> None:
         """Let other processes look for what was compiled here."""
-        if self._turn is not None:
-            self._turn.release()
+        turn, self._turn = self._turn, None  # threads of this process may come here together
+        if turn is not None:
+            turn.release()
             with contextlib.suppress(OSError):  # a process that waits has it open
-                Path(self._turn.lock_file).unlink()
-            self._turn = None
+                Path(turn.lock_file).unlink()
             kept().note_used()
 
     def save_overload(self, signature: Any, compiled: Any) -> None:

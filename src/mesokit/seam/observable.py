@@ -230,9 +230,9 @@ class BlockAccumulator(ABC):
 
     def pool(self, other: Self) -> None:
         """Take in the samples of an independent run of the same case: only to read."""
-        both = zip(self._parts(self.memory), other._parts(self.memory), strict=True)
-        for (_, _, part), (_, _, theirs) in both:
+        theirs = {name: part for _, name, part in other._parts(self.memory)}
+        for _, name, part in self._parts(self.memory):
             if hasattr(part, "pool"):
-                part.pool(theirs)
+                part.pool(theirs[name])
         for name in self.added:
             setattr(self, name, getattr(self, name) + getattr(other, name))
