@@ -1,4 +1,4 @@
-"""Processes that compile one kernel take turns by a lock, of which threads of a process share one."""
+"""Processes that compile one kernel take turns by a lock, which threads of a process share."""
 
 from pathlib import Path
 
