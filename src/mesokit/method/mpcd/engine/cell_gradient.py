@@ -39,7 +39,7 @@ class NeighbourSums(NamedTuple):
     closed: tuple
 
 
-@where(fluid=lambda fluid: len(field_of(field_of(fluid, "cells"), "field")))
+@where(fluid=lambda fluid: len(field_of(field_of(fluid, "cells"), "neighbour_sums")))
 def fill_neighbour_sums(worker, physics, fluid):
     """Store the sum of every cell if a rule needs its gradient; ends with a barrier."""
     cells = fluid.cells
