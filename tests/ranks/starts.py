@@ -92,15 +92,21 @@ class Watched:
 @contextlib.contextmanager
 def watched(seen):
     """Meanwhile note which rows are read of files."""
-    load, snapshot, earlier = arrays.array_in_file, first_state.read_snapshot, EarlierRows._folded
+    load, snapshot, earlier = (
+        arrays.array_in_file,
+        first_state.read_snapshot,
+        EarlierRows.__getitem__,
+    )
 
     def read(*given):
         seen[:] = True
         return snapshot(*given)
 
-    def folded(self, first, last):
-        seen[first:last] = True
-        return earlier(self, first, last)
+    def molecules(self, rows):
+        first, last, _ = rows.indices(len(self))
+        beads = self.numbers.beads
+        seen[first // beads * beads : -(-last // beads) * beads] = True
+        return earlier(self, rows)
 
     def loaded(*given):
         found = load(*given)
@@ -112,7 +118,7 @@ def watched(seen):
         for where, name, value in (
             (arrays, "array_in_file", loaded),
             (first_state, "read_snapshot", read),
-            (EarlierRows, "_folded", folded),
+            (EarlierRows, "__getitem__", molecules),
         ):
             changed.enter_context(mock.patch.object(where, name, value))
         yield

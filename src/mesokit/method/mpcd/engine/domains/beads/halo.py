@@ -137,7 +137,6 @@ def migrate_beads(now, physics, box, shared, beads):
 
 
 @scalar
-@scalar
 def append(out, p, i, r, v):
     """Add id, place and velocity of a bead to the message to a partner."""
     row, d = 1 + int(out[p, 0, 0]), len(r)
