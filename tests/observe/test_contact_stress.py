@@ -1,5 +1,8 @@
 """Stress and contacts of soft spheres: beds bear their weight, stiff gases are as hard ones."""
 
+import math
+from typing import Literal
+
 import pytest
 
 from mesokit import (
@@ -16,6 +19,7 @@ from mesokit import (
     SphereKind,
     SpringDashpot,
 )
+from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError, RunError
 from tests.helpers.comparisons import by_name
 
@@ -113,3 +117,18 @@ def test_beds_of_two_sizes_are_said_to_be_approximate():
 def test_one_sphere_has_no_stress():
     with pytest.raises(CaseError, match=r"contact-stress.*1 sphere"):
         observed([5.0, 5.0], 1, number=1)
+
+
+@component
+class Bump(LennardJones):
+    """A potential of one's own, with fields that are called as answers of laws of contact are."""
+
+    rule: Literal["bump"] = tag("bump")
+    elastic: bool = param(True, doc="a field like any other")
+    width: int = param(1, doc="another")
+
+
+def test_a_potential_is_not_taken_for_a_law_of_contact_by_its_fields():
+    said, _ = observed([8.0, 8.0], 40, number=16, kT=1.0, pair=Bump(), timestep=0.002)
+    assert "contacts of a sphere" not in said
+    assert math.isnan(said["P/(n kT)"].expected)

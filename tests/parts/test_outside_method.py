@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,10 @@ import pytest
 import mesokit
 from mesokit import open as opened
 from mesokit.case.case import case_class
+from mesokit.case.trajectory import Group, Kind, Trajectory
+from mesokit.errors import CaseError, RunError
+from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.report.flow.kinds import usual
 
 SOURCE = Path(mesokit.__file__).parents[1]
 PAGE = Path(__file__).parents[2] / "docs" / "extending.md"
@@ -110,3 +115,25 @@ def test_a_method_on_a_lattice_runs_and_is_drawn_and_swept(folder, command, inst
 def test_what_a_lattice_does_not_have_is_refused(command, change, words):
     told = command("check", "case.toml", "--set", change, status=2)
     assert words in told and "Traceback" not in told and len(told.strip().splitlines()) == 1
+
+
+class ManyStates:
+    """An engine of two sites, one in a state that 16 bits do not hold."""
+
+    step, time = 0, 0.0
+
+    def sites(self, ids):
+        return np.array([3, 40_000])[ids]
+
+
+def test_states_that_a_file_cannot_hold_are_refused(tmp_path):
+    writer = TrajectoryWriter(Trajectory(every=1, fields=("site",)), tmp_path, 2)
+    with pytest.raises(RunError, match="'site': states from 3 to 40000; expected -32768 to 32767"):
+        writer.record(ManyStates())
+
+
+def test_an_unknown_picture_of_a_group_names_the_method():
+    rods = Group("rods", (Kind(1.0, 2),), picture="rodlike")
+    case = SimpleNamespace(groups=(rods,), run=SimpleNamespace(method="rods"))
+    with pytest.raises(CaseError, match="method 'rods': picture = 'rodlike': expected 'quiver'"):
+        usual(case, [], "four", in_time=False)

@@ -61,7 +61,7 @@ class TrajectoryWriter:
             "velocity": lambda: of.velocities(ids).astype(real),
             "spin": lambda: of.spins(ids).astype(real),
             "orientation": lambda: of.orientations(ids).astype(real),
-            "site": lambda: of.sites(ids).astype(np.int16),
+            "site": lambda: _states(of.sites(ids)),
             "image": lambda: of.images(ids).astype(np.int32),
         }
         fields = self.trajectory.fields
@@ -181,6 +181,17 @@ class Stacked:
         """Its rows, some at a time."""
         for entry in self.entries:
             yield from entry.blocks() if hasattr(entry, "blocks") else [entry]
+
+
+def _states(sites: NDArray[Any]) -> NDArray[np.int16]:
+    """States of sites as they are stored. Raises RunError for those beyond 16 bits."""
+    stored = sites.astype(np.int16)
+    if not np.array_equal(stored, sites):
+        raise RunError(
+            f"trajectory.fields: 'site': states from {sites.min()} to {sites.max()}; "
+            "expected -32768 to 32767"
+        )
+    return stored
 
 
 def _inside(position: NDArray[Any], box: NDArray[Any]) -> NDArray[Any]:

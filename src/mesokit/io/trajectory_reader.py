@@ -58,7 +58,8 @@ class TrajectoryReader:
             return h5md.in_frames(data, frames, field, self.dimension)
 
     def __repr__(self) -> str:
+        what = "sites" if self.fields == ("site",) else "particles"
         return (
-            f"trajectory: {len(self)} frames of {len(self.id)} particles"
+            f"trajectory: {len(self)} frames of {len(self.id)} {what}"
             f" ({', '.join(self.fields) or 'ids only'})"
         )

@@ -59,7 +59,10 @@ def usual(case: Case, found: Found, first: str, in_time: bool) -> str:
     That of the method, then `first`, then what needs less. Where nothing is enough it is the first
     of these, whose refusal says what to add to the case.
     """
-    wanted = [case.groups[0].picture or first, first, "speed", "density", "particles"]
+    own = case.groups[0].picture if case.groups else ""
+    if own and own not in KINDS:
+        raise CaseError(f"method {show(case.run.method)}: picture = {show(own)}: {_expected(own)}")
+    wanted = [own or first, first, "speed", "density", "particles"]
     for kind in wanted:
         needs = {panel.NEEDS for panel in KINDS[kind]}
         drawn = [source for source in found if len(source.time) or not in_time]
@@ -69,12 +72,15 @@ def usual(case: Case, found: Found, first: str, in_time: bool) -> str:
     return wanted[0]
 
 
+def _expected(kind: object) -> str:
+    return f"expected {one_of(list(KINDS))}{nearest(str(kind), list(KINDS))}"
+
+
 def panels_of(kind: str, case: Case, colour: str | None = None) -> tuple[Panel, ...]:
     """The panels of a kind of picture. Raises CaseError for an unknown one, one of what the
     particles of the case have not, and a choice of colours that it does not have."""
     if kind not in KINDS:
-        known = list(KINDS)
-        raise CaseError(f"kind = {show(kind)}: expected {one_of(known)}{nearest(str(kind), known)}")
+        raise CaseError(f"kind = {show(kind)}: {_expected(kind)}")
     of_spheres = any(panel.NEEDS == "spheres" for panel in KINDS[kind])
     if colour is not None and not of_spheres:
         raise CaseError(

@@ -84,9 +84,16 @@ freedom.register(AT2)(lambda rule, n: 2.0 * (n - 1.0))
 freedom.register(AT3)(lambda rule, n: 3.0 * (n - 1.0))
 
 
-@coefficients.register(AT2, AT3)
+@coefficients.register(AT2)
 def _(rule, thermostat, variate, chance, cell):
-    return scaled(1.0 / cell.mass, added(cell.momentum, scaled(-1.0, cell.sums)))
+    drawn = cell.sums[0], cell.sums[1]
+    return scaled(1.0 / cell.mass, added(cell.momentum, scaled(-1.0, drawn)))
+
+
+@coefficients.register(AT3)
+def _(rule, thermostat, variate, chance, cell):
+    drawn = cell.sums[0], cell.sums[1], cell.sums[2]
+    return scaled(1.0 / cell.mass, added(cell.momentum, scaled(-1.0, drawn)))
 
 
 collide.register(AT2, AT3)(lambda rule, c, v, r: added(v, c))

@@ -12,6 +12,7 @@ from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.observe.protocol import OfSpheres
+from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
@@ -91,12 +92,13 @@ class ContactStressAccumulator(BlockAccumulator):
         if self.floor is None and not self.case.walls and kT > 0:
             per, known, note = 1 / (self.case.particles / self.volume * kT), math.nan, ""
             gradient = np.array([0.0, per, -forces * per / kT, 0, 0, 0, 0])
-            if alike and getattr(section.pair, "elastic", False) and not section.gravity:
+            elastic = isinstance(section.pair, ContactLaw) and section.pair.elastic
+            if alike and elastic and not section.gravity:
                 known = theory.compressibility(section.fraction(box), box.dimension)
                 note = "approximate: hard spheres"
             measured = found.scalar(1 + forces * per, gradient)
             yield Comparison("P/(n kT)", *measured, known, "", note)
-        if getattr(section.pair, "width", None) is not None:
+        if isinstance(section.pair, ContactLaw):
             yield Comparison("contacts of a sphere", *found.scalar(contacts, np.eye(7)[3]))
         if self.floor is not None and weight > 0 and above == 0:
             gradient = np.array([0.0, 0, 0, 0, 1 / weight, -flux / weight**2, 0])
