@@ -63,7 +63,7 @@ def main() -> None:
 def _machine() -> str:
     import os
 
-    from mesokit.io.run_directory import _processor
+    from mesokit.io.provenance import _processor
 
     return f"{_processor()}, {os.cpu_count()} cores, Python {platform.python_version()}"
 

@@ -19,8 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from mesokit import Box, Run, Simulation
-from mesokit.method.flock import AngularNoise, Flock
+from mesokit import AngularNoise, Box, Flock, Run, Simulation
 
 DENSITY, NOISE, SPEED = 2.0, 2.0, 0.5
 NUMBERS = (2_000, 20_000, 100_000, 1_000_000)
@@ -66,7 +65,9 @@ def timed(
         ours = engine(number, threads, density)
         ours.advance(200)
         chunk = max(1, 2_000_000 // number)
-        size = sum(array.nbytes for group in ours.groups for array in group)
+        size = sum(
+            array.nbytes for group in ours.flock for array in group if isinstance(array, np.ndarray)
+        )
 
         def step() -> None:
             ours.advance(chunk)

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from common import BLUE, GREEN, GREY, PURPLE, RED, Page, long, main, mean_and_error, plt
 
-from mesokit import Box, Comparison, Run, Simulation, theory
-from mesokit.method.flock import AngularNoise, Flock, VectorialNoise
+from mesokit import AngularNoise, Box, Comparison, Flock, Run, Simulation, VectorialNoise, theory
 from mesokit.method.flock.observe.number_fluctuations import counts_in_squares
 
 BLOCKS = 20

@@ -11,7 +11,7 @@ from scipy.special import ive
 
 from mesokit import CaseError, Demix, DomainSize, Species, theory
 from mesokit.method.mpcd.collision.directed import quaternion, turned_by, von_mises
-from mesokit.method.mpcd.engine.cell_gradient import Field, gradient_at
+from mesokit.method.mpcd.engine.cell_gradient import NeighbourSums, gradient_at
 from tests.helpers.small_fluids import Measured, make_fluid, mean
 
 DENSITY = 10
@@ -52,8 +52,8 @@ def test_gradient_of_a_line_is_its_slope(cells):
     strides = np.cumprod((1, *cells[:-1]))
     inside = int(np.dot([2] * len(cells), strides))
     corner = int(np.dot(np.array(cells) - 1, strides))
-    periodic = Field(0, values, cells, (0,) * len(cells))
-    closed = Field(0, values, cells, (1,) * len(cells))
+    periodic = NeighbourSums(0, values, cells, (0,) * len(cells))
+    closed = NeighbourSums(0, values, cells, (1,) * len(cells))
     assert ask(periodic, inside) == pytest.approx(slope)
     assert ask(closed, corner) == pytest.approx([s / 2 for s in slope])
     # the next cell is the first, further away by all cells

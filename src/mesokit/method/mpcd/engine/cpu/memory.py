@@ -259,6 +259,14 @@ class Memory:
         positions[ids], velocities[ids], images[ids] = rows
         return positions, velocities, images
 
+    @property
+    def bytes_held(self) -> int:
+        """Memory of all arrays."""
+        fluid, order = self.fluid, self.order
+        groups = (*fluid.particles, *fluid.cells, fluid.room, *fluid.scratch, *fluid.taken)
+        arrays = (*groups, order.order, order.ends, order.spare)
+        return sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
+
     def rows_of(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """The same in the order of memory."""
         particles, d = self.fluid.particles, self.numbers.dimension
