@@ -96,4 +96,5 @@ def _(rule, thermostat, variate, chance, cell):
     return scaled(1.0 / cell.mass, added(cell.momentum, scaled(-1.0, drawn)))
 
 
-collide.register(AT2, AT3)(lambda rule, c, v, r: added(v, c))
+collide.register(AT2)(lambda rule, c, v, r: (v[0] + c[0], v[1] + c[1]))
+collide.register(AT3)(lambda rule, c, v, r: (v[0] + c[0], v[1] + c[1], v[2] + c[2]))
