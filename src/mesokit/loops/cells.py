@@ -56,28 +56,29 @@ def cell_after(grid, box, k, here, offset):
 
 
 @scalar
-def cell_around(grid, box, r, here, slide, n):
-    """Number of the nth of the 3^d cells at and around a place in the box; NOWHERE for none.
+def row_around(grid, box, r, here, slide, n):
+    """The nth of the 3^(d-1) rows of cells along x at and around a place in the box.
 
-    `here`: numbers of the cell of r along each axis.
-    `slide`: displacement along x of the images above, 0 without shear. Every bead within the length
-    of a cell, images included, is in one of these cells, and no cell comes twice.
+    Returns the number of its first cell, NOWHERE for none, and the number along x of the cell of
+    the place there. `here`: numbers of the cell of r along each axis. `slide`: displacement along x
+    of the images above, 0 without shear. With `cell_after` along x, every bead within the length of
+    a cell, images included, is in one of these cells, and no cell comes twice.
     """
-    middle, along_x, cell, stride = here[0], n % 3 - 1, 0, grid.cells[0]
-    # x comes last: across an end along y images are displaced along x, and the place with them.
+    middle, row, stride = here[0], 0, grid.cells[0]
+    # Rows come first and x last: across an end along y images are displaced along x, and the place
+    # with them.
     for k in range(1, len(r)):
-        n //= 3
         offset = n % 3 - 1
+        n //= 3
         there = cell_after(grid, box, k, here[k], offset)
         if there == NOWHERE:
-            return NOWHERE
+            return NOWHERE, middle
         if k == 1 and there != here[k] + offset:
             x = r[0] - offset * slide
             middle = cell_along(grid, 0, x - floor(x * box.inverse[0]) * box.size[0])
-        cell += there * stride
+        row += there * stride
         stride *= grid.cells[k]
-    there = cell_after(grid, box, 0, middle, along_x)
-    return cell + there if there != NOWHERE else NOWHERE
+    return row, middle
 
 
 @scalar

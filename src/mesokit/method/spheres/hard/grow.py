@@ -10,7 +10,7 @@ import numpy as np
 
 from mesokit.errors import CaseError, RunError
 from mesokit.kernels.kernel import kernel
-from mesokit.loops.cells import NOWHERE, Grid, cell_around, cell_of, cells_along
+from mesokit.loops.cells import NOWHERE, Grid, cell_after, cell_of, cells_along, row_around
 from mesokit.loops.neighbours import inverse_lengths, nearest_image
 from mesokit.method.spheres.common.walls import entries, outward
 from mesokit.method.spheres.hard.collision.hard import Constant
@@ -140,13 +140,15 @@ def fits(world, grid, head, following, radii, places, r, radius):
             return False
     # Cells are as long as the largest diameter, so a sphere touches only those in cells around it.
     here = cells_along(grid, r)
-    for n in range(3 ** len(r)):
-        cell = cell_around(grid, world, r, here, 0.0, n)
-        j = head[cell] if cell != NOWHERE else -1
-        while j >= 0:
-            apart = nearest_image(world, added_scaled(entries(places, j, 0, r), -1.0, r))
-            reach = radius + radii[j]
-            if dot(apart, apart) < reach * reach:
-                return False
-            j = following[j]
+    for n in range(3 ** (len(r) - 1)):
+        row, middle = row_around(grid, world, r, here, 0.0, n)
+        for a in range(-1, 2 if row != NOWHERE else -1):
+            along_x = cell_after(grid, world, 0, middle, a)
+            j = head[row + along_x] if along_x != NOWHERE else -1
+            while j >= 0:
+                apart = nearest_image(world, added_scaled(entries(places, j, 0, r), -1.0, r))
+                reach = radius + radii[j]
+                if dot(apart, apart) < reach * reach:
+                    return False
+                j = following[j]
     return True

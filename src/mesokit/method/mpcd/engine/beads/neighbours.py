@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.case.box import SLIDING, fold
-from mesokit.loops.cells import NOWHERE, cell_around, cell_of, cells_along
+from mesokit.loops.cells import NOWHERE, cell_after, cell_of, cells_along, row_around
 from mesokit.loops.layout import share
 from mesokit.loops.neighbours import GAP, insert, nearest_image, outdated
 from mesokit.loops.threads import barrier
@@ -178,12 +178,14 @@ def make_list(lists, box, places, i, zero):
     # the same bits whenever the list was made. `found` counts on beyond a full list, to mark it
     # CROWDED.
     here = cells_along(lists, r)
-    for n in range(3**d):
-        cell = cell_around(lists, box, r, here, slide, n)
-        j = lists.head[cell] if cell != NOWHERE else -1
-        while j >= 0:
-            separation = apart(box, mine, load_values(places, np.uint64(j * d), zero))
-            if j != i and dot(separation, separation) <= square:
-                found = insert(lists.near, i, found, j) if found < most else found + 1
-            j = lists.following[j]
+    for n in range(3 ** (d - 1)):
+        row, middle = row_around(lists, box, r, here, slide, n)
+        for a in range(-1, 2 if row != NOWHERE else -1):
+            along_x = cell_after(lists, box, 0, middle, a)
+            j = lists.head[np.uint64(row + along_x)] if along_x != NOWHERE else -1
+            while j >= 0:
+                separation = apart(box, mine, load_values(places, np.uint64(j * d), zero))
+                if j != i and dot(separation, separation) <= square:
+                    found = insert(lists.near, i, found, j) if found < most else found + 1
+                j = lists.following[j]
     lists.count[i] = found if found <= most else CROWDED

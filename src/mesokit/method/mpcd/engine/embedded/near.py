@@ -12,7 +12,7 @@ import numpy as np
 
 from mesokit.case.box import fold
 from mesokit.kernels.kernel import inner
-from mesokit.loops.cells import NOWHERE, cell_around, cells_along
+from mesokit.loops.cells import NOWHERE, cell_after, cells_along, row_around
 from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.neighbours import apart, find_cells, link
@@ -145,16 +145,18 @@ def find_partners(embedded, beads, box, r, path, where):
     # The list holds beads within reach of a flight of length `travel`. It is kept only if one of
     # them is within reach of the particle's own flight. Forces are integers, so its order is free.
     here = cells_along(lists, place)
-    for n in range(3**d):
-        cell = cell_around(lists, box, place, here, 0.0, n)
-        j = lists.head[cell] if cell != NOWHERE else -1
-        while j >= 0:
-            if comes_near(embedded, beads, box, r, embedded.travel, j):
-                if found < PARTNERS:
-                    embedded.beads[where[0], where[1] * PARTNERS + found] = j
-                found += 1
-                met |= comes_near(embedded, beads, box, r, path, j)
-            j = lists.following[j]
+    for n in range(3 ** (d - 1)):
+        row, middle = row_around(lists, box, place, here, 0.0, n)
+        for a in range(-1, 2 if row != NOWHERE else -1):
+            along_x = cell_after(lists, box, 0, middle, a)
+            j = lists.head[np.uint64(row + along_x)] if along_x != NOWHERE else -1
+            while j >= 0:
+                if comes_near(embedded, beads, box, r, embedded.travel, j):
+                    if found < PARTNERS:
+                        embedded.beads[where[0], where[1] * PARTNERS + found] = j
+                    found += 1
+                    met |= comes_near(embedded, beads, box, r, path, j)
+                j = lists.following[j]
     if not met:
         return 0
     return found if found <= PARTNERS else ALL_BEADS

@@ -7,7 +7,7 @@ centres, so that spheres cross no cells.
 
 import math
 
-from mesokit.loops.cells import NOWHERE, cell_around, cell_of, cells_along
+from mesokit.loops.cells import NOWHERE, cell_after, cell_of, cells_along, row_around
 from mesokit.loops.neighbours import nearest_image
 from mesokit.method.spheres.common.walls import entries
 from mesokit.method.spheres.hard.engine.groups import RADIUS
@@ -71,10 +71,12 @@ def find(world, lists, state, i, r):
     room = True
     # The cells around the centre; each is at least as long as two centres on a list may be apart.
     here = cells_along(lists, r)
-    for n in range(3 ** len(r)):
-        cell = cell_around(lists, world, r, here, 0.0, n)
-        if cell != NOWHERE:
-            room &= list_cell(world, lists, state, i, r, cell)
+    for n in range(3 ** (len(r) - 1)):
+        row, middle = row_around(lists, world, r, here, 0.0, n)
+        for a in range(-1, 2 if row != NOWHERE else -1):
+            along_x = cell_after(lists, world, 0, middle, a)
+            if along_x != NOWHERE:
+                room &= list_cell(world, lists, state, i, r, row + along_x)
     return room
 
 
