@@ -16,6 +16,7 @@ from mesokit.case.describe import kept, keys
 from mesokit.case.methods import METHODS, templates
 from mesokit.case.registry import FAMILIES
 from mesokit.cli import main
+from mesokit.method.spheres.soft.pair import PairLaw
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = [Path(str(file)) for file in templates().values()]
@@ -251,3 +252,15 @@ def test_the_methods_are_named(capsys):
     said = " ".join(capsys.readouterr().out.split())
     assert all(f'"{name}"' in said for name in METHODS)
     assert 'default "mpcd"' in said
+
+
+def test_pair_laws_are_in_one_order_whichever_was_imported_first():
+    family = FAMILIES[PairLaw]
+    ordered = list(family.parts)
+    assert ordered[:2] == ["hertz", "spring-dashpot"] and ordered[2:] == sorted(ordered[2:])
+    kept = dict(family.known)
+    try:
+        family.known = {name: kept[name] for name in reversed(kept)}
+        assert list(family.parts) == ordered
+    finally:
+        family.known = kept

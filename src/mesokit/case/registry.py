@@ -44,12 +44,19 @@ class Family:
 
     @property
     def parts(self) -> dict[str, type[Any]]:
-        """All parts by name: those of mesokit's folders in alphabetical order, then others."""
+        """All parts by name, whichever was imported first: those of the family's folders in
+        alphabetical order, then others of mesokit, then those of scripts and packages."""
         for package in self.packages:
             for module in sorted(_modules(package)):
                 importlib.import_module(f"{package}.{module}")
-        own = [n for n, p in self.known.items() if p.__module__.rpartition(".")[0] in self.packages]
-        self.known = {n: self.known[n] for n in sorted(own)} | self.known
+
+        def rank(name: str) -> tuple[int, str]:
+            module = self.known[name].__module__
+            if module.rpartition(".")[0] in self.packages:
+                return 0, name
+            return (1, name) if module.split(".")[0] == "mesokit" else (2, "")
+
+        self.known = {name: self.known[name] for name in sorted(self.known, key=rank)}
         return self.known
 
     def add(self, name: str, part: type) -> None:

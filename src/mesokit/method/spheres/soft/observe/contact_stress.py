@@ -12,6 +12,7 @@ from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.observe.protocol import OfSpheres
+from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
@@ -83,8 +84,6 @@ class ContactStressAccumulator(BlockAccumulator):
 
     def comparisons(self) -> Iterator[Comparison]:
         """Pressure, compressibility, contacts, and flux over weight."""
-        from mesokit.method.spheres.soft.pair.protocol import ContactLaw  # only for such cases
-
         found, section, box = of_mean(self.blocks), self.case.spheres, self.case.box
         kinetic, forces, kT, contacts, flux, weight, above = found.value
         alike = len(section.kinds) == 1 and section.kinds[0].spread == 0
