@@ -152,7 +152,7 @@ def test_a_stopped_study_goes_on(case_file, tmp_path, study):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_runs_do_not_outlive_a_study_that_is_killed(case_file, tmp_path, study):
-    """When nobody is there to ask them, workers end their runs at a checkpoint."""
+    """Workers end their runs at a checkpoint when the process that started them has gone."""
     process = start(case_file, tmp_path / "s")
     runs = begun(tmp_path / "s", 2, process)
     process.kill()

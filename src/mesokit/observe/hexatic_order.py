@@ -18,8 +18,8 @@ from mesokit.statistics import Blocks
 class HexaticOrder(Observable):
     """psi_6: the mean over Voronoi neighbours of exp(6 i angle), of each disk and of all.
 
-    "local" is the mean size of a disk's own psi_6, "global" the size of the mean over all disks,
-    which falls with the number of disks in a fluid and stays in a hexatic or a crystal.
+    "local" is the mean size of a disk's own psi_6, "global" the size of the mean over all disks.
+    That falls with the number of disks in a fluid, and stays in a hexatic or a crystal.
     """
 
     quantity: Literal["hexatic-order"] = tag("hexatic-order")

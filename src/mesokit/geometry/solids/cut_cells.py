@@ -45,8 +45,11 @@ def cut_cells(
 def cut_planes(
     solids: Solids, cells: tuple[int, ...], block: Block | None = None
 ) -> tuple[Any, ...]:
-    """For each of these the normal (entries, d) and height of the plane that cuts it, its middle in
-    the box, its term, and the cell of the box in which the surface lies nearest to its middle."""
+    """Planes that cut the cells of `cut_cells`, as columns with a row for each cell.
+
+    Normal (entries, d) and height of the plane, middle of the cell in the box, number of the term,
+    and the cell of the box in which the surface lies nearest to that middle.
+    """
     if block is None:
         return _of_all(_planes, solids, cells, None)
     chosen, _ = _of_tiles(solids, cells, block)

@@ -2,8 +2,8 @@
 
 A flight starts at r, in the fluid or on a surface, with velocity v, and has the acceleration a.
 Half-spaces have a formula. Convex parts are approached by their tangent planes: no flight reaches
-the solid before it reaches the plane, so the time of the plane is safe, and the next plane, at the
-place reached, is nearer to the truth, quadratically as Newton's method. Sampled solids are crossed
+the solid before it reaches the plane, so the time of the plane is safe. The next plane, at the
+place reached, is nearer to the solid, quadratically as Newton's method. Sampled solids are crossed
 cell by cell of their grid. Everything else is approached by steps no longer than the distance to
 it, and the crossing is then bracketed.
 """

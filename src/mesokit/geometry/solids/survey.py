@@ -50,11 +50,11 @@ def block_at(r, edge, solid):
 
 @kernel
 def near_blocks(solid, pattern, away, above, blocks):
-    """Count, or list once `near` has room, the terms that may be `away` or nearer from any part of
-    a cell in each block, or be the nearest to its middle, of those that may in the block above.
+    """Count the terms near each block of cells, or list them once `near` has room.
 
-    A clearance is never more than the distance, which changes no more than the place does: so what
-    is left out is farther than that from all cells of the block.
+    A term is near if it may be within `away` of any part of a cell, or the nearest to the middle of
+    one; only terms near the block above are tried. A clearance is at most the distance, and changes
+    no faster than the place: all other terms are farther away from every cell of the block.
     """
     span = 0.5 * math.sqrt(float(len(pattern)))
     inside = span * (blocks.edge - 1)  # from the middle of the block to that of a cell

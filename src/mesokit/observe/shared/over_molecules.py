@@ -92,10 +92,10 @@ class OwnMeans(BlockAccumulator):
 class MeansOverMolecules(BlockAccumulator):
     """Means of numbers that every molecule has at each sample.
 
-    Two error bars are kept, and the larger counts: blocks of time see what all molecules do
-    together, the scatter of the molecules' own means sees what takes longer than the run, such as
-    a chain that is caught behind an obstacle. What all there is has together may be conserved,
-    however: where blocks of time differ by rounding alone, nothing else is uncertain.
+    Two error bars are kept, and the larger counts. Blocks of time show fluctuations of all molecules
+    together. The scatter of the molecules' own means shows what takes longer than the run, such as
+    a chain that is caught behind an obstacle. Where blocks of time differ by rounding alone, the
+    mean over all molecules is conserved and has no error.
 
     Parameters
     ----------

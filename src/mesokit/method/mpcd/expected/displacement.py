@@ -153,10 +153,9 @@ class Displacement:
     def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line.
 
-        That is when a particle has forgotten its velocity, which it does in m D/kT, and, of
-        solutes, when the flow that they had set going has spread over the box, and the molecules of
-        a fluid of such around them have relaxed; in a molecule, when
-        a bead has forgotten where in the molecule it is. What drags beads along in a fluid of
+        A velocity decays in m D/kT. For solutes the flow that they stir up must spread over the box
+        besides, and molecules of the fluid around them must relax. In a molecule the place of a
+        bead in it must be lost. What drags beads along in a fluid of
         molecules changes as the molecule turns, so that its centre is in no hurry either.
         """
         if self.trapped or (not self.case.fluid.collision.acts and self.molecule is None):

@@ -1,8 +1,8 @@
 """Cells that hold beads: coefficients of the collision for particles and beads together.
 
-Cells add up the fluid alone, which then pays nothing for beads. For the few cells with beads the
-sums are completed here, each by the thread whose share of `collide` it is in, and what follows from
-them takes the place of the answer that `collide` finds for the fluid alone.
+Cells add up the fluid alone, so beads cost nothing elsewhere. Here the sums of the few cells with
+beads are completed, each by the thread that collides the cell. The coefficients of these sums
+replace those that `collide` finds for the fluid alone.
 """
 
 import math

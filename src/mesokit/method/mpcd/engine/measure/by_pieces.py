@@ -1,9 +1,9 @@
 """Sums over particles that are read piece by piece, never all at once.
 
-Each rank has pieces of its own, and so has each order of particles in memory. What is found of a
-particle must be the same in any piece, by operations on its own row alone (no matrix products, no
-library functions that take several rows at a time by another way than the last few). The sums are
-exact, so that nothing depends on the pieces.
+Each rank has pieces of its own, and so has each order of particles in memory. The terms of a
+particle must be the same in any piece: operations act on its own row alone. So there are no matrix
+products, and no library functions that take the last few rows in another way than the others. The
+sums are exact, so that nothing depends on the pieces.
 """
 
 from collections.abc import Callable, Iterator, Sequence

@@ -32,10 +32,10 @@ class ContactStress(OfSpheres):
     """Pressure by the motion of soft spheres and by their forces, and how many touch each.
 
     The pressure of forces is the virial of pairs, sum r F over d times the volume of the box.
-    Beside it are, of stiff elastic spheres in a box without walls, the pressure of hard ones, and
-    of a bed in gravity what the weight above each height needs: the momentum flux along gravity,
-    over the box, is m g times the sum of the heights above those of spheres on the floor, as long
-    as none is thrown against the ceiling.
+    The pressure of stiff elastic spheres in a box without walls is compared with that of hard ones.
+    In a bed the momentum flux along gravity, over the box, carries the weight above each height: it
+    is m g times the sum of the heights above those of spheres on the floor. That holds as long as
+    none is thrown against the ceiling.
     """
 
     quantity: Literal["contact-stress"] = tag("contact-stress")
