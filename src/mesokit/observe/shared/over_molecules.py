@@ -92,7 +92,7 @@ class OwnMeans(BlockAccumulator):
 class MeansOverMolecules(BlockAccumulator):
     """Means of numbers that every molecule has at each sample.
 
-    Two error bars are kept, and the larger counts. Blocks of time show fluctuations of all molecules
+    Two error bars are kept, and the larger counts. Blocks of time show what all molecules do
     together. The scatter of the molecules' own means shows what takes longer than the run, such as
     a chain that is caught behind an obstacle. Where blocks of time differ by rounding alone, the
     mean over all molecules is conserved and has no error.
