@@ -16,10 +16,10 @@ from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import Row, Summary
 
 RATE_OF_POTENTIALS = 2.5e6  # sphere-steps per second and core (docs/benchmark)
-USUAL_NEIGHBOURS = 66.0  # within the reach in this measurement
-FEWEST = 500  # spheres of a thread, below which it gains nothing
+USUAL_NEIGHBOURS = 66.0  # of a sphere, within the reach, where that rate was measured
+FEWEST = 500  # spheres of a thread: with fewer, another thread gains nothing
 DEEP = 0.05  # overlap, in diameters, beyond which spheres are not hard
-LONG = 4.0  # steps of the usual length beyond which a fluid of a potential loses its energy
+LONG = 4.0  # usual timesteps: a longer one makes the energy of a fluid with a potential drift
 
 
 def soft_summary(case: Case, threads: int | None = None) -> Summary:
@@ -32,21 +32,21 @@ def soft_summary(case: Case, threads: int | None = None) -> Summary:
     numbers: dict[str, Any] = {"packing_fraction": phi, "timestep": step}
     reach, density = section.reach(box), case.particles / box.volume
     if isinstance(section.pair, ContactLaw):
-        rows += _contacts(case, numbers)
+        rows += _contacts(case, numbers)  # both lists of rows add to `numbers`, for warnings
         # Grains at rest are closer than those that fall, so their lists are longer.
         rests = cost.comes_to_rest(case, _loses(case), section.thermostat is not None)
         closer = max(phi, cost.AT_REST_FILLED[box.dimension]) / phi if rests else 1.0
         listed = closer * density * ball_volume(box.dimension, 2 * cost.LIST_REACH * reach)
-        of_core = steps * cost.soft_seconds(case.particles, listed, section.turns)
+        core_seconds = steps * cost.soft_seconds(case.particles, listed, section.turns)
     else:
         within = density * ball_volume(box.dimension, 2 * reach)
         rate = RATE_OF_POTENTIALS * USUAL_NEIGHBOURS / max(within, 10.0)
-        of_core = steps * case.particles / rate
+        core_seconds = steps * case.particles / rate
     used = min(cores, max(case.particles // FEWEST, 1))
-    numbers["seconds"] = of_core / used
+    numbers["seconds"] = core_seconds / used
     few = f", as fast as {used}: few spheres" if used < cores else ""
     note = f"estimate: {cores} thread{'s' * (cores > 1)}{few}"
-    beside = _beside(case, steps, of_core, numbers)
+    beside = list(_beside(case, steps, core_seconds, numbers))
     return cost.summary_of(case, rows, beside, numbers, note, _warnings(case, numbers))
 
 
@@ -68,7 +68,7 @@ def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
     yield "overlap", number(overlap, "diameters"), "expected at that speed"
 
 
-def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> Iterator[Row]:
+def _beside(case: Case, steps: int, core_seconds: float, numbers: dict[str, Any]) -> Iterator[Row]:
     """Rows on the cost of the same spheres as hard ones, and on the cheaper method."""
     section, step = case.spheres, numbers["timestep"]
     flight = cost.flight_of(section, case.box)
@@ -79,7 +79,7 @@ def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> 
     numbers |= {
         "hard_seconds": hard,
         "steps_per_flight": 1 / (flight.rate * step),
-        "cheaper": "soft-spheres" if rests or of_core < hard else "event-driven",
+        "cheaper": "soft-spheres" if rests or core_seconds < hard else "event-driven",
     }
     yield "steps per flight", number(numbers["steps_per_flight"]), "from a collision to the next"
     yield (
@@ -89,14 +89,14 @@ def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> 
     )
     if rests:
         yield cost.AT_REST
-    elif of_core < hard:
-        yield cost.cheaper("soft spheres", hard / of_core)
+    elif core_seconds < hard:
+        yield cost.cheaper("soft spheres", hard / core_seconds)
     else:
-        yield cost.cheaper("event-driven", of_core / hard)
+        yield cost.cheaper("event-driven", core_seconds / hard)
 
 
 def _loses(case: Case) -> bool:
-    """Whether contacts take energy."""
+    """True if contacts dissipate energy."""
     mass, speed = 0.5 * scales.lightest(case), scales.speed_of_collision(case)
     return case.spheres.turns or case.spheres.pair.restitution_of(mass, speed) < 1
 
