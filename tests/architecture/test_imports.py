@@ -46,7 +46,7 @@ ROWS = {
     "theory/": ("theory",),
     "theory/__init__.py": ("stub",),
     "statistics/": ("statistics",),
-    "case/methods.py": (),
+    "case/methods.py": ("errors",),
     "case/": ("case", "errors", "scalar", "theory"),
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),

@@ -56,6 +56,32 @@ def test_a_package_brings_a_method():
     assert simulation["mean-square-displacement"].samples == 11  # the start included
 
 
+def entry_point(folder, value):
+    (folder / "wander-1.0.dist-info" / "entry_points.txt").write_text(
+        f"[mesokit.methods]\nwander = {value}\n"
+    )
+
+
+@pytest.mark.usefixtures("package")
+def test_an_entry_point_may_name_the_object_in_its_module(tmp_path):
+    entry_point(tmp_path, "wander.method:METHOD")
+    assert methods.load("wander").name == "wander"
+
+
+@pytest.mark.parametrize(
+    ("value", "reason"),
+    [
+        ("wander.methud", "No module named 'wander.methud'"),
+        ("wander", "module 'wander' has no attribute 'METHOD'"),
+    ],
+)
+@pytest.mark.usefixtures("package")
+def test_an_entry_point_without_a_method_is_refused(tmp_path, value, reason):
+    entry_point(tmp_path, value)
+    with pytest.raises(CaseError, match=f"run.method = 'wander': module .* imported: {reason}"):
+        methods.load("wander")
+
+
 @pytest.mark.parametrize("name", methods.METHODS)
 def test_every_method_answers_what_it_is_asked(name):
     method = methods.load(name)

@@ -8,6 +8,8 @@ import importlib
 import pathlib
 from typing import Any
 
+from mesokit.errors import CaseError
+
 METHODS = {  # value of `run.method`: the module that holds the METHOD
     "mpcd": "mesokit.method.mpcd.method",
     "brownian": "mesokit.method.brownian.method",
@@ -23,13 +25,24 @@ def modules() -> dict[str, str]:
     import importlib.metadata
 
     installed = importlib.metadata.entry_points(group="mesokit.methods")
-    return {point.name: point.value for point in installed} | METHODS
+    return {point.name: point.module for point in installed} | METHODS
 
 
 def load(name: str) -> Any:
-    """The `Method` of that name. Raises KeyError if there is none."""
-    place = METHODS[name] if name in METHODS else modules()[name]
-    return importlib.import_module(place).METHOD
+    """The `Method` of that name.
+
+    Raises KeyError if there is none, and CaseError if that of a package cannot be imported.
+    """
+    if name in METHODS:
+        return importlib.import_module(METHODS[name]).METHOD
+    place = modules()[name]
+    try:
+        return importlib.import_module(place).METHOD
+    except (ImportError, AttributeError) as error:
+        reason = " ".join(str(error).split())
+        raise CaseError(
+            f"run.method = {name!r}: module {place!r} of its package cannot be imported: {reason}"
+        ) from error
 
 
 def templates() -> dict[str, Any]:
