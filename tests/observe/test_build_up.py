@@ -278,7 +278,7 @@ def test_the_time_of_a_flow_from_rest_is_that_of_its_exponential(time, had, leng
         blocks.add(0.0)
     found = flow_memory(case, 0, momentum, blocks, every=10)
     assert found.time == pytest.approx(time, rel=5e-3)
-    assert found.times == pytest.approx(length / time, rel=5e-3)
+    assert found.relaxations == pytest.approx(length / time, rel=5e-3)
     low = flow_memory(case, 0, momentum - found.least, blocks, every=10)  # by chance
     assert low.time < time < build_up_of(low, case).steps * 0.1
 
