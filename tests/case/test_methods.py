@@ -1,6 +1,8 @@
 """A case belongs to a method; a package can bring one."""
 
 import copy
+import dataclasses
+import importlib
 import pickle
 
 import pytest
@@ -54,6 +56,19 @@ def test_a_package_brings_a_method():
     simulation = Simulation(case, threads=2)
     simulation.run()
     assert simulation["mean-square-displacement"].samples == 11  # the start included
+
+
+@pytest.mark.usefixtures("package")
+def test_a_method_may_offer_no_observable_of_its_own(tmp_path, monkeypatch):
+    method = methods.load("wander")
+    module = importlib.import_module("wander.method")
+    monkeypatch.setattr(module, "METHOD", dataclasses.replace(method, observables=()))
+    case = tmp_path / "case.toml"
+    case.write_text(CASE.split("[[observe]]")[0])
+    assert Case.from_toml(case).observe == ()
+    case.write_text(CASE)
+    with pytest.raises(CaseError, match=r"observe\[#1\].quantity = .* does not offer any$"):
+        Case.from_toml(case)
 
 
 def entry_point(folder, value):

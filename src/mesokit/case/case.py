@@ -189,7 +189,8 @@ def case_class(name: str) -> type[Case]:
     fields: dict[str, Any] = {}
     for key, field in FIELDS.items():
         fields |= sections if key == SECTIONS else {key: field}
-    observable: Any = next(base for base in FAMILIES if issubclass(method.observables[0], base))
+    # known once the module of any method is imported
+    observable: Any = next(f.base for f in FAMILIES.values() if f.group == "mesokit.observable")
     fields["observe"] = (tuple[observable, ...], fields["observe"][1])
     body = {
         "__annotations__": {key: hint for key, (hint, _) in fields.items()},

@@ -49,9 +49,10 @@ def offered(case: Any, method: str, observables: tuple[type, ...]) -> Iterator[s
                 for name, part in family_of(observable).parts.items()
                 if is_offered(part, method, observables)
             )
+            choice = f"offer it; expected {one_of(known)}" if known else "offer any"
             yield (
                 f"observe[#{i + 1}].quantity = {show(name_of(observable))}: method {show(method)} "
-                f"does not offer it; expected {one_of(known)}"
+                f"does not {choice}"
             )
 
 
