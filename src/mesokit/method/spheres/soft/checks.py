@@ -104,8 +104,8 @@ def _check_potential(case: Case) -> None:
     given, own = kinds[0].diameter * scale, section.pair.diameter
     if abs(given - own) > ROUNDING * own:
         raise CaseError(
-            f"spheres.kinds: diameter {given:.9g}; expected that of the potential, {own:.9g}, as "
-            "kinds have that say none (with number or density, and no packing fraction beside)"
+            f"spheres.kinds: diameter {given:.9g}; expected that of the potential, {own:.9g}: "
+            "leave it out, and give number or density but no packing fraction"
         )
 
 

@@ -44,7 +44,7 @@ def soft_summary(case: Case, threads: int | None = None) -> Summary:
         core_seconds = steps * case.particles / rate
     used = min(cores, max(case.particles // FEWEST, 1))
     numbers["seconds"] = core_seconds / used
-    few = f", as fast as {used}: few spheres" if used < cores else ""
+    few = f", no faster than {used}: few spheres" if used < cores else ""
     note = f"estimate: {cores} thread{'s' * (cores > 1)}{few}"
     beside = list(_beside(case, steps, core_seconds, numbers))
     return cost.summary_of(case, rows, beside, numbers, note, _warnings(case, numbers))
