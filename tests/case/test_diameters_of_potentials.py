@@ -42,7 +42,7 @@ def test_a_case_on_record_says_it(table, tmp_path):
 def test_the_digits_of_the_message_are_enough(table):
     with pytest.raises(CaseError, match=r"spheres\.kinds: diameter 1\.5; expected that of") as no:
         case_of(table, kinds=[SphereKind(1.5)])
-    said = str(no.value).split("the potential, ")[1].split(",")[0]
+    said = str(no.value).split("the potential, ")[1].split(":")[0]
     assert case_of(table, kinds=[SphereKind(float(said))])
 
 
