@@ -38,6 +38,8 @@ from mesokit.theory.dumbbell_shear import pair_friction as pair_friction
 from mesokit.theory.enskog import contact_value as contact_value
 from mesokit.theory.enskog import enskog_diffusion as enskog_diffusion
 from mesokit.theory.enskog import enskog_rate as enskog_rate
+from mesokit.theory.exclusion import open_current as open_current
+from mesokit.theory.exclusion import ring_current as ring_current
 from mesokit.theory.finite_size import diffusion_in_box as diffusion_in_box
 from mesokit.theory.finite_size import viscosity_renormalised as viscosity_renormalised
 from mesokit.theory.flight_moduli import flight_moduli as flight_moduli
@@ -84,6 +86,11 @@ from mesokit.theory.imperfect_gas import lennard_jones_tail as lennard_jones_tai
 from mesokit.theory.imperfect_gas import second_virial as second_virial
 from mesokit.theory.inelastic_collapse import collapse_restitution as collapse_restitution
 from mesokit.theory.inelastic_collapse import elastic_share as elastic_share
+from mesokit.theory.ising import chain_energy as chain_energy
+from mesokit.theory.ising import counted_spins as counted_spins
+from mesokit.theory.ising import glauber_walls as glauber_walls
+from mesokit.theory.ising import onsager_energy as onsager_energy
+from mesokit.theory.ising import yang_magnetisation as yang_magnetisation
 from mesokit.theory.kolmogorov import kolmogorov_onset_time as kolmogorov_onset_time
 from mesokit.theory.kolmogorov import kolmogorov_velocity as kolmogorov_velocity
 from mesokit.theory.kolmogorov import kolmogorov_viscosity as kolmogorov_viscosity
