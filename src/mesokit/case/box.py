@@ -29,7 +29,8 @@ else:
 class Box:
     """A rectangular box; two sizes make it 2D. Periodic where no wall closes it.
 
-    Sizes are whole numbers of cells for methods that have cells.
+    Sizes are whole numbers of cells for methods that have cells, and numbers of sites for those
+    that have a lattice, which may have one axis alone.
     """
 
     size: Many[Length] = param(doc="length along each axis: two numbers (2D) or three", unit="a")
@@ -57,8 +58,8 @@ class Box:
 
     @field_validator("size")
     @classmethod
-    def _two_or_three_lengths(cls, size: tuple[float, ...]) -> tuple[float, ...]:
-        if len(size) not in (2, 3):
+    def _up_to_three_lengths(cls, size: tuple[float, ...]) -> tuple[float, ...]:
+        if len(size) not in (1, 2, 3):
             raise ValueError("expected two lengths (2D) or three (3D)")
         if not min(size) > 0:
             raise ValueError("expected lengths above 0")
@@ -80,7 +81,7 @@ class Box:
 
     @property
     def dimension(self) -> int:
-        """2 or 3."""
+        """2 or 3; 1 for a chain of sites."""
         return len(self.size)
 
     @property
@@ -92,7 +93,8 @@ class Box:
         """0, 1 or 2 for x, y or z. Raises CaseError, which names the key, for z in 2D."""
         index = AXES.index(axis)
         if index >= self.dimension:
-            raise CaseError(f"{key} = {axis!r}: a 2D box has only 'x' and 'y'")
+            have = "'x'" if self.dimension == 1 else "'x' and 'y'"
+            raise CaseError(f"{key} = {axis!r}: a {self.dimension}D box has only {have}")
         return index
 
     @property

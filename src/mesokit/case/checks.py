@@ -133,7 +133,11 @@ def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
 
 
 def box_keys(box: Any, method: Any) -> None:
-    """Raise CaseError for a key of the box that the method does not take."""
+    """Raise CaseError for a key of the box that the method does not take, and for a chain."""
+    if box.dimension not in method.dimensions:
+        raise CaseError(
+            f"box.size = {show(list(box.size))}: expected two lengths (2D) or three (3D)"
+        )
     usual = type(box)(box.size)
     for key in (field.name for field in dataclasses.fields(box)):
         value = getattr(box, key)

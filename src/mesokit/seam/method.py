@@ -185,6 +185,8 @@ class Method:
         What a case starts from.
     engine : function of a case, a number of threads and what observables need measured
         The engine, with nothing in it yet.
+    dimensions : sequence of int, optional
+        How many axes its box may have (two or three unless said).
     box : sequence of str, optional
         Keys of the box that it takes beside `size`; all others are refused.
     keys : mapping, optional
@@ -219,6 +221,7 @@ class Method:
     summary: Callable[[Case, int | None], Summary]
     initial: InitialState[Any, Any]
     engine: Callable[[Case, int, Sequence[str]], Engine]
+    dimensions: tuple[int, ...] = (2, 3)
     box: tuple[str, ...] = ()
     keys: Mapping[str, str] = field(default_factory=dict)
     expected: Mapping[str, Callable[[Case, Observable], Any]] = field(default_factory=dict)
