@@ -1,0 +1,1 @@
+"""Lattices: their sites, the neighbours of each, and where these are in memory."""

@@ -1,0 +1,57 @@
+"""Kinetic Monte Carlo, as the record by which the package runs it."""
+
+from collections.abc import Collection
+
+import numpy as np
+
+from mesokit.case.case import Case
+from mesokit.case.trajectory import Group, Kind
+from mesokit.method.kinetic_monte_carlo.checks import check
+from mesokit.method.kinetic_monte_carlo.engine.engine import Events
+from mesokit.method.kinetic_monte_carlo.observe import LatticeObservable
+from mesokit.method.kinetic_monte_carlo.section import Sections
+from mesokit.method.kinetic_monte_carlo.start import files_of, first_state, sites_of
+from mesokit.method.kinetic_monte_carlo.summary import summary
+from mesokit.seam.method import Columns, InitialState, Method
+
+
+def groups(case: Case) -> tuple[Group, ...]:
+    """One group of sites."""
+    return (
+        Group(
+            "sites",
+            (Kind(1.0, sites_of(case)),),
+            has=("site",),
+            picture="sites",
+            lattice=tuple(map(int, case.box.size)),
+            states=case.lattice.model.states(),
+        ),
+    )
+
+
+def columns(case: Case) -> Columns:
+    """The part of the sites in each state, and the events so far, for the log of a run."""
+    states = case.lattice.model.states()
+
+    def read(engine: Events, wanted: Collection[str]) -> dict[str, float]:
+        parts = np.bincount(engine.sites(), minlength=len(states)) / engine.n
+        values = dict(zip(states, map(float, parts), strict=True))
+        values["events"] = float(engine.course.drawn[0]) - 1
+        return {name: values[name] for name in wanted}
+
+    return Columns((*states, "events"), ("events",), read)
+
+
+METHOD = Method(
+    name="kinetic-monte-carlo",
+    sections=Sections,
+    observables=(LatticeObservable,),
+    check=check,
+    groups=groups,
+    timestep=lambda case: float(case.lattice.timestep),
+    dimensions=(1, 2, 3),
+    summary=summary,
+    initial=InitialState(first_state, Events.start, ("states",), files_of, "lattice.start.run"),
+    engine=lambda case, threads, measures: Events(case),
+    log=columns,
+)

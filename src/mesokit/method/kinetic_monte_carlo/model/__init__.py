@@ -1,0 +1,1 @@
+"""Models: what may happen at a site, and at what rate. One file each."""

@@ -1,0 +1,51 @@
+"""The simple exclusion process: particles that hop to empty neighbours (Spitzer 1970)."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.kinetic_monte_carlo.model.table import Process, TableModel
+
+EMPTY, FULL, OUTSIDE = 0, 1, 2
+FORWARD, BACKWARD = (0,), (1,)  # directions along x
+
+
+@component
+class Exclusion(TableModel):
+    """Particles on a chain, at most one at a site, that hop forward and backward.
+
+    Where the chain ends, particles enter at the first site and leave at the last one. With
+    backward = 0 it is totally asymmetric (TASEP), with equal rates symmetric (SSEP).
+    """
+
+    rule: Literal["exclusion"] = tag("exclusion")
+    forward: float = param(1.0, doc="rate of hops along x", symbol="p", unit="1/time", ge=0)
+    backward: float = param(0.0, doc="rate of hops against x", symbol="q", unit="1/time", ge=0)
+    enter: float = param(
+        0.0, doc="rate at which particles enter an empty first site", unit="1/time", ge=0
+    )
+    leave: float = param(
+        0.0, doc="rate at which particles leave the last site", unit="1/time", ge=0
+    )
+    enter_last: float = param(
+        0.0, doc="rate at which particles enter an empty last site", unit="1/time", ge=0
+    )
+    leave_first: float = param(
+        0.0, doc="rate at which particles leave the first site", unit="1/time", ge=0
+    )
+
+    def states(self) -> tuple[str, ...]:
+        return "empty", "particle"
+
+    def processes(self) -> list[Process]:
+        """Hops, and what happens at the ends."""
+        out = (OUTSIDE, OUTSIDE)
+        return [
+            Process("enter", (EMPTY, FULL), self.enter, (), out, BACKWARD),
+            Process("enter last", (EMPTY, FULL), self.enter_last, (), out, FORWARD),
+            Process("forward", (FULL, EMPTY), self.forward, (), (EMPTY, FULL), FORWARD),
+            Process("backward", (FULL, EMPTY), self.backward, (), (EMPTY, FULL), BACKWARD),
+            Process("leave", (FULL, EMPTY), self.leave, (), out, FORWARD),
+            Process("leave first", (FULL, EMPTY), self.leave_first, (), out, BACKWARD),
+        ]

@@ -1,0 +1,66 @@
+"""Seam of models: what may happen at a site, how often, and what it changes.
+
+The first argument of the scalar functions is the model's NamedTuple of parameters; its class picks
+the implementation. `sites` are `mesokit.method.kinetic_monte_carlo.lattice.grid.Sites`.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component
+from mesokit.case.registry import family
+from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.scalar.jit import generic
+
+
+class Energies(NamedTuple):
+    """Energy of a site in each state (s,), and of two neighbours in each pair of states (s, s)."""
+
+    site: NDArray[np.float64]
+    pair: NDArray[np.float64]
+
+
+@family("model of a lattice", "rule", "mesokit.lattice_model")
+@component
+class Model(ABC):
+    """What may happen at the sites of a lattice."""
+
+    @abstractmethod
+    def states(self) -> tuple[str, ...]:
+        """Names of the states of a site, by their numbers."""
+
+    @abstractmethod
+    def kernel(self, kind: Kind, ends: bool) -> Any:
+        """Parameters for the scalar functions below; `ends`: whether neighbours may be missing."""
+
+    @abstractmethod
+    def events(self) -> Sequence[str]:
+        """Names of what may happen, by the number that `process_of` gives."""
+
+    def energies(self) -> Energies | None:
+        """Energies of sites and of pairs of neighbours; None where there is no energy."""
+        return None
+
+
+@generic
+def surroundings(model, sites, i):
+    """The number of the surroundings of the site at place i in memory: all that the rates of what
+    may happen there depend on."""
+
+
+@generic
+def surroundings_after(model, sites, i, direction, old, new):
+    """The same where the state of one neighbour alone has changed, and all else was known."""
+
+
+@generic
+def process_of(model, sites, i, u):
+    """One of the processes that may happen at a site, drawn by a number u uniform in [0, 1).
+
+    Its number; the new state of the site; of a process with a neighbour its direction, its place in
+    memory (-1 where there is none) and its new state.
+    """

@@ -1,0 +1,208 @@
+"""First states of the sites: drawn, in a pattern, from a file or from an earlier run."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from mesokit.case.case import Case
+from mesokit.case.component import component, nearest, one_of, param, show, tag
+from mesokit.case.describe.hints import Many
+from mesokit.case.given.array_file import EXPECTED, array_in_file
+from mesokit.case.given.file import FileName
+from mesokit.case.registry import family
+from mesokit.errors import CaseError, MesokitError
+from mesokit.io import checkpoint
+from mesokit.io.run_directory import RunDirectory
+
+States = NDArray[np.integer[Any]]
+DRAW = 91  # purpose of the random numbers here: with the seed, the key of the generator
+
+
+@family("start of a lattice", "rule", "mesokit.lattice_start")
+@component
+class LatticeStart(ABC):
+    """The first state of each site."""
+
+    @abstractmethod
+    def states(self, case: Case) -> States:
+        """States (n,) by number of the site. Raises CaseError."""
+
+
+@component
+class UniformStart(LatticeStart):
+    """All sites in one state."""
+
+    rule: Literal["uniform"] = tag("uniform")
+    state: str | None = param(None, doc="name of the state (the first unless said)")
+
+    def states(self, case: Case) -> States:
+        return np.full(sites_of(case), _number(case, "state", self.state, 0), np.uint8)
+
+
+@component
+class RandomStart(LatticeStart):
+    """Each site in a state of its own, drawn at random."""
+
+    rule: Literal["random"] = tag("random")
+    fractions: Many[float] = param(
+        (), doc="of sites in each state, with the sum 1 (all alike unless said)"
+    )
+    exact: bool = param(
+        False, doc="true: as many sites in each state as the fractions say, not only on average"
+    )
+
+    @model_validator(mode="after")
+    def _sum(self) -> RandomStart:
+        if self.fractions and (min(self.fractions) < 0 or abs(sum(self.fractions) - 1) > 1e-9):
+            raise ValueError(
+                f"fractions = {show(list(self.fractions))}: expected numbers from 0 with the sum 1"
+            )
+        return self
+
+    def states(self, case: Case) -> States:
+        names, n = case.lattice.model.states(), sites_of(case)
+        if self.fractions and len(self.fractions) != len(names):
+            raise CaseError(
+                f"lattice.start.fractions = {show(list(self.fractions))}: expected {len(names)} "
+                f"numbers, one for each of {one_of(names)}"
+            )
+        shares = np.array(self.fractions or [1 / len(names)] * len(names))
+        edges = shares.cumsum()[:-1]
+        drawn = np.random.Generator(np.random.Philox(key=[case.run.seed, DRAW])).random(n)
+        if self.exact:  # in the order of their numbers: as many as the fractions say
+            drawn = (np.argsort(np.argsort(drawn)) + 0.5) / n
+        return np.searchsorted(edges, drawn, side="right").astype(np.uint8)
+
+
+@component
+class StepStart(LatticeStart):
+    """The sites up to a part of the length in one state, the others in another."""
+
+    rule: Literal["step"] = tag("step")
+    axis: Literal["x", "y", "z"] = param("x", doc="axis across the step")
+    part: float = param(0.5, doc="where the step is, over the length", gt=0, lt=1)
+    state: str | None = param(None, doc="name of the state before it (the second unless said)")
+    beyond: str | None = param(None, doc="name of the state behind it (the first unless said)")
+
+    def states(self, case: Case) -> States:
+        axis, size = case.box.index(self.axis, "lattice.start.axis"), case.box.size
+        before = np.indices(size)[axis].ravel() < round(self.part * size[axis])
+        first = _number(case, "state", self.state, 1)
+        return np.where(before, first, _number(case, "beyond", self.beyond, 0)).astype(np.uint8)
+
+
+@component
+class DropletStart(LatticeStart):
+    """The sites within a radius of the middle in one state, the others in another."""
+
+    rule: Literal["droplet"] = tag("droplet")
+    radius: float = param(doc="in distances of neighbours", gt=0)
+    state: str | None = param(None, doc="name of the state within (the second unless said)")
+    beyond: str | None = param(None, doc="name of the state around (the first unless said)")
+
+    def states(self, case: Case) -> States:
+        places = case.lattice.lattice.places(tuple(map(int, case.box.size)))
+        middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
+        inside = ((places - middle) ** 2).sum(axis=1) <= self.radius**2
+        first = _number(case, "state", self.state, 1)
+        return np.where(inside, first, _number(case, "beyond", self.beyond, 0)).astype(np.uint8)
+
+
+@component
+class FileStart(LatticeStart):
+    """States from a file."""
+
+    rule: Literal["file"] = tag("file")
+    file: FileName = param(doc="file .npy with the number of the state of each site, as the box")
+
+    def states(self, case: Case) -> States:
+        key = f"lattice.start.file = {show(self.file, 500)}"
+        try:
+            found = array_in_file(self.file, "states", tuple(map(int, case.box.size)))
+        except OSError as error:
+            raise CaseError(f"{key}: {EXPECTED}: {error.strerror}") from None
+        except ValueError as error:
+            raise CaseError(f"{key}: {error}") from None
+        return checked(case, key, found)
+
+
+@component
+class RunStart(LatticeStart):
+    """States from the last checkpoint of an earlier run, with the clock at 0."""
+
+    rule: Literal["run"] = tag("run")
+    run: FileName = param(doc="folder of the run")
+
+    def states(self, case: Case) -> States:
+        key = f"lattice.start.run = {show(self.run, 500)}"
+        try:
+            directory = RunDirectory.existing(self.run)
+            earlier = Case.from_toml(directory.case_file)
+            arrays, _ = checkpoint.read(directory.checkpoint_file)
+        except (OSError, MesokitError) as error:
+            raise CaseError(f"{key}: {error}") from None
+        if earlier.run.method != case.run.method:
+            raise CaseError(f"{key}: that is a run of method {show(earlier.run.method)}")
+        if list(earlier.box.size) != list(case.box.size):
+            raise CaseError(
+                f"{key}: that run has a box of {show(list(earlier.box.size))}, this case "
+                f"{show(list(case.box.size))}"
+            )
+        return checked(case, key, checkpoint.part(arrays, "engine/")["states"])
+
+
+def sites_of(case: Case) -> int:
+    """How many sites a case has."""
+    return int(np.prod(case.box.size))
+
+
+def checked(case: Case, key: str, found: Any) -> States:
+    """States (n,) that were given. Raises CaseError for numbers that are those of no state."""
+    try:
+        array = np.asarray(found)
+    except (TypeError, ValueError):
+        raise CaseError(f"{key}: expected an array of whole numbers") from None
+    if array.dtype.kind not in "iub":
+        raise CaseError(f"{key}: expected whole numbers, not {array.dtype.name}")
+    if array.size != sites_of(case):
+        raise CaseError(f"{key}: shape {array.shape}: expected {tuple(case.box.size)}")
+    flat, names = array.ravel().astype(np.int64), case.lattice.model.states()
+    wrong = np.flatnonzero((flat < 0) | (flat >= len(names)))
+    if len(wrong):
+        raise CaseError(
+            f"{key}: site {int(wrong[0])} has state {int(flat[wrong[0]])}: expected 0 to "
+            f"{len(names) - 1}"
+        )
+    return flat.astype(np.uint8)
+
+
+def first_state(case: Case, arrays: Mapping[str, Any]) -> States:
+    """The states (n,) to start from: those of an array, or of the case."""
+    if "states" in arrays:
+        return checked(case, "states", arrays["states"])
+    return case.lattice.start.states(case)
+
+
+def files_of(case: Case) -> dict[str, Path]:
+    """The file or folder that a case starts from."""
+    start = case.lattice.start
+    found = {key: getattr(start, key, None) for key in ("file", "run")}
+    return {f"lattice.start.{key}": Path(name) for key, name in found.items() if name is not None}
+
+
+def _number(case: Case, key: str, name: str | None, usual: int) -> int:
+    names: Sequence[str] = case.lattice.model.states()
+    if name is None:
+        return min(usual, len(names) - 1)
+    if name not in names:
+        raise CaseError(
+            f"lattice.start.{key} = {show(name)}: expected {one_of(names)}{nearest(name, names)}"
+        )
+    return names.index(name)
