@@ -76,19 +76,19 @@ def test_a_method_on_a_lattice_runs_and_is_drawn_and_swept(folder, command, inst
     assert "half the energy" in command("explain", "ising.coupling")
     command("check", "case.toml")
     told = command("run", "case.toml")
-    assert "magnetisation" in told
-    assert "magnetisation" in command("info", "case")  # its own entry point brings its parts
+    assert "mean-spin" in told
+    assert "mean-spin" in command("info", "case")  # its own entry point brings its parts
     command("plot", "case", "--kind", "sites")
     command("animate", "case", "--output", "film.gif")
     assert (folder / "film.gif").stat().st_size > 1000
-    assert (folder / "case" / "magnetisation.png").exists()
+    assert (folder / "case" / "mean-spin.png").exists()
     command("report", "case")
     monkeypatch.syspath_prepend(installed)
     try:
         files = opened(folder / "case")
         states = files.trajectory.read("site")
         assert states.shape == (9, 64 * 48) and set(np.unique(states)) == {0, 1}
-        (found,) = files["magnetisation"].comparisons
+        (found,) = files["mean-spin"].comparisons
         assert found.expected == pytest.approx((1 - np.sinh(1.0) ** -4) ** 0.125)
         assert abs(found.deviation) < 4 and found.error < 0.01
         # the same bits where the run was stopped and made longer
@@ -96,11 +96,11 @@ def test_a_method_on_a_lattice_runs_and_is_drawn_and_swept(folder, command, inst
         command("resume", "short", "--steps", "400")
         longer = opened(folder / "short")
         assert np.array_equal(longer.trajectory.read("site"), states)
-        assert longer["magnetisation"].value == files["magnetisation"].value
+        assert longer["mean-spin"].value == files["mean-spin"].value
     finally:
         case_class.cache_clear()
     study = command("study", "case.toml", "--vary", "ising.coupling=0.5,0.6", "--seeds", "2")
-    assert "magnetisation" in study
+    assert "mean-spin" in study
 
 
 @pytest.mark.parametrize(

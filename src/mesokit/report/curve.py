@@ -81,6 +81,26 @@ def draw_path(result: Result, ax: Any) -> None:
     legend_above(ax)
 
 
+def draw_roughness(result: Result, ax: Any) -> None:
+    """A width in time on logarithmic axes, with a band of one standard error, and theory."""
+    time = np.asarray(result.x["time"], float)
+    use = (time > 0) & (result.value > 0)
+    value, error = result.value[use], result.error[use]
+    band = {"color": COLOURS[0], "alpha": 0.25, "lw": 0, "label": "one standard error"}
+    ax.fill_between(time[use], np.maximum(value - error, 0.1 * value), value + error, **band)
+    ax.plot(time[use], value, color=COLOURS[0], lw=1, label="measured", zorder=2)
+    if result.expected is not None:
+        look: Any = {"color": "black", "lw": 1.2, "ls": "--", "zorder": 3}
+        ax.plot(time[use], result.expected[use], label=theory_of(result), **look)
+    if use.any():
+        ax.set(xscale="log", yscale="log")
+        sparse_logarithm(ax.xaxis, *ax.get_xlim())
+        sparse_logarithm(ax.yaxis, *ax.get_ylim())
+    ax.set_xlabel(labelled("time $t$", result.units["time"]))
+    ax.set_ylabel(labelled(result.label, result.units["value"]))
+    legend_above(ax)
+
+
 def draw_cooling(result: Result, ax: Any) -> None:
     """Temperatures in time on logarithmic axes, which have no place for those before the start.
 

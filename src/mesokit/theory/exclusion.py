@@ -48,13 +48,13 @@ def _log_sum(sites: int, enter: float, leave: float) -> float:
     a, b = 1.0 / enter, 1.0 / leave
     terms = []
     for p in range(1, sites + 1):
-        ways = (
+        count = (
             math.log(p)
             + math.lgamma(2 * sites - p)
             - math.lgamma(sites + 1)
             - math.lgamma(sites - p + 1)
         )
-        terms.append(ways + _log_powers(p, a, b))
+        terms.append(count + _log_powers(p, a, b))
     top = max(terms)
     return top + math.log(math.fsum(math.exp(term - top) for term in terms))
 

@@ -6,14 +6,20 @@ import functools
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.method.kinetic_monte_carlo.lattice.grid import by_number, grid_of, neighbour
+from mesokit.method.kinetic_monte_carlo.model.ballistic import Ballistic
 from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
+from mesokit.method.kinetic_monte_carlo.model.family import Family
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import LatticeGas
-from mesokit.method.kinetic_monte_carlo.start import sites_of
+from mesokit.method.kinetic_monte_carlo.model.random_deposition import RandomDeposition
+from mesokit.method.kinetic_monte_carlo.model.rsos import RestrictedSolidOnSolid
+from mesokit.method.kinetic_monte_carlo.model.single_step import SingleStep
+from mesokit.method.kinetic_monte_carlo.start import UniformStart, sites_of
 
 Known = tuple[float, str]  # a number and a note on its theory
 UNKNOWN: Known = (math.nan, "")
@@ -72,7 +78,7 @@ def langmuir(case: Case) -> float:
         if one.neighbour is None:
             adsorb += rate if one.site == (0, 1) else 0.0
             desorb += rate if one.site == (1, 0) else 0.0
-        elif {one.site, one.neighbour} != {(0, 1), (1, 0)}:
+        elif {one.site, (one.neighbour[0][0], one.neighbour[1])} != {(0, 1), (1, 0)}:
             return math.nan
     return adsorb / (adsorb + desorb) if adsorb + desorb > 0 else math.nan
 
@@ -112,3 +118,28 @@ def event_rates(case: Case) -> dict[str, Known]:
                 "forward": (current * (sites - 1) / sites, note),
             }
     return {}
+
+
+def width(case: Case, time: NDArray) -> tuple[NDArray | None, str]:
+    """Width of a surface at times, None without theory."""
+    model = case.lattice.model
+    flat = isinstance(case.lattice.first(), UniformStart)
+    if isinstance(model, RandomDeposition) and flat:
+        share = 1 - 1 / sites_of(case)
+        return np.sqrt(model.flux * time * share), "independent columns, exact"
+    return None, ""
+
+
+def growth_exponent(case: Case) -> Known:
+    """Exponent of the width in time, while correlations are shorter than the lattice."""
+    model, chain = case.lattice.model, case.lattice.kind == "chain"
+    if isinstance(model, RandomDeposition):
+        return 0.5, "independent columns"
+    if isinstance(model, Family) and chain:
+        return 0.25, "approximate: Edwards and Wilkinson, at late times"
+    driven = isinstance(model, RestrictedSolidOnSolid | Ballistic) or (
+        isinstance(model, SingleStep) and model.up != model.down
+    )
+    if driven and chain:
+        return 1 / 3, "approximate: Kardar, Parisi and Zhang, at late times"
+    return UNKNOWN

@@ -32,14 +32,20 @@ def groups(case: Case) -> tuple[Group, ...]:
 def columns(case: Case) -> Columns:
     """The part of the sites in each state, and the events so far, for the log of a run."""
     states = case.lattice.model.states()
+    names = states or ("height", "width")
 
     def read(engine: Events, wanted: Collection[str]) -> dict[str, float]:
-        parts = np.bincount(engine.sites(), minlength=len(states)) / engine.n
-        values = dict(zip(states, map(float, parts), strict=True))
+        sites = engine.sites()
+        parts = (
+            np.bincount(sites, minlength=len(states)) / engine.n
+            if states
+            else (sites.mean(), sites.std())
+        )
+        values = dict(zip(names, map(float, parts), strict=True))
         values["events"] = float(engine.course.drawn[0]) - 1
         return {name: values[name] for name in wanted}
 
-    return Columns((*states, "events"), ("events",), read)
+    return Columns((*names, "events"), ("events",), read)
 
 
 METHOD = Method(

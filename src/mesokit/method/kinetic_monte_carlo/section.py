@@ -10,7 +10,7 @@ from mesokit.case.describe.hints import Many
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS, Kind
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.protocol import Model
-from mesokit.method.kinetic_monte_carlo.start import LatticeStart, RandomStart
+from mesokit.method.kinetic_monte_carlo.start import LatticeStart, RandomStart, UniformStart
 
 Name = Literal["chain", "square", "triangular", "honeycomb", "cubic", "bcc", "fcc"]
 
@@ -26,7 +26,15 @@ class Lattice:
     ends: Many[Axis] = param((), doc="axes along which the lattice ends (periodic unless said)")
     timestep: float = param(1.0, doc="time of a step of the run", gt=0, le=1e300)
     model: Model = param(Ising(), doc="what may happen at the sites")
-    start: LatticeStart = param(RandomStart(), doc="states that the sites start in")
+    start: LatticeStart | None = param(
+        None, doc="states that the sites start in (random, or heights 0, unless said)"
+    )
+
+    def first(self) -> LatticeStart:
+        """The start, whether it is said or not."""
+        if self.start is not None:
+            return self.start
+        return RandomStart() if self.model.states() else UniformStart()
 
     @property
     def lattice(self) -> Kind:

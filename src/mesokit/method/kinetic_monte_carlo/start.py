@@ -43,7 +43,7 @@ class UniformStart(LatticeStart):
     state: str | None = param(None, doc="name of the state (the first unless said)")
 
     def states(self, case: Case) -> States:
-        return np.full(sites_of(case), _number(case, "state", self.state, 0), np.uint8)
+        return np.full(sites_of(case), _number(case, "state", self.state, 0), kind_of(case))
 
 
 @component
@@ -68,6 +68,8 @@ class RandomStart(LatticeStart):
 
     def states(self, case: Case) -> States:
         names, n = case.lattice.model.states(), sites_of(case)
+        if not names:
+            raise CaseError("lattice.start.rule = 'random': not for heights; expected 'uniform'")
         if self.fractions and len(self.fractions) != len(names):
             raise CaseError(
                 f"lattice.start.fractions = {show(list(self.fractions))}: expected {len(names)} "
@@ -78,24 +80,26 @@ class RandomStart(LatticeStart):
         drawn = np.random.Generator(np.random.Philox(key=[case.run.seed, DRAW])).random(n)
         if self.exact:  # in the order of their numbers: as many as the fractions say
             drawn = (np.argsort(np.argsort(drawn)) + 0.5) / n
-        return np.searchsorted(edges, drawn, side="right").astype(np.uint8)
+        return np.searchsorted(edges, drawn, side="right").astype(kind_of(case))
 
 
 @component
-class StepStart(LatticeStart):
-    """The sites up to a part of the length in one state, the others in another."""
+class SlabStart(LatticeStart):
+    """The sites in a slab, from 0 along an axis, in one state, the others in another."""
 
-    rule: Literal["step"] = tag("step")
-    axis: Literal["x", "y", "z"] = param("x", doc="axis across the step")
-    part: float = param(0.5, doc="where the step is, over the length", gt=0, lt=1)
-    state: str | None = param(None, doc="name of the state before it (the second unless said)")
-    beyond: str | None = param(None, doc="name of the state behind it (the first unless said)")
+    rule: Literal["slab"] = tag("slab")
+    axis: Literal["x", "y", "z"] = param("x", doc="axis across it")
+    part: float = param(0.5, doc="its length over that of the box", gt=0, lt=1)
+    state: str | None = param(None, doc="name of the state within (the second unless said)")
+    beyond: str | None = param(None, doc="name of the state beyond (the first unless said)")
 
     def states(self, case: Case) -> States:
         axis, size = case.box.index(self.axis, "lattice.start.axis"), case.box.size
         before = np.indices(size)[axis].ravel() < round(self.part * size[axis])
         first = _number(case, "state", self.state, 1)
-        return np.where(before, first, _number(case, "beyond", self.beyond, 0)).astype(np.uint8)
+        return np.where(before, first, _number(case, "beyond", self.beyond, 0)).astype(
+            kind_of(case)
+        )
 
 
 @component
@@ -112,7 +116,30 @@ class DropletStart(LatticeStart):
         middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
         inside = ((places - middle) ** 2).sum(axis=1) <= self.radius**2
         first = _number(case, "state", self.state, 1)
-        return np.where(inside, first, _number(case, "beyond", self.beyond, 0)).astype(np.uint8)
+        return np.where(inside, first, _number(case, "beyond", self.beyond, 0)).astype(
+            kind_of(case)
+        )
+
+
+@component
+class AlternatingStart(LatticeStart):
+    """Neighbours in two states, in turn: heights 0 and 1 of the single-step model."""
+
+    rule: Literal["alternating"] = tag("alternating")
+
+    def states(self, case: Case) -> States:
+        if case.lattice.kind not in ("chain", "square", "honeycomb", "cubic"):
+            raise CaseError(
+                "lattice.start.rule = 'alternating': on this lattice neighbours of a site are "
+                "neighbours of one another; expected another start"
+            )
+        for axis, length in zip(case.box.axes, case.box.size, strict=True):
+            if length % 2 and axis not in case.lattice.ends:
+                raise CaseError(
+                    f"box.size = {show(list(case.box.size))}: expected an even number along "
+                    f"{axis} for lattice.start.rule = 'alternating'"
+                )
+        return (np.indices(case.box.size).sum(axis=0).ravel() % 2).astype(kind_of(case))
 
 
 @component
@@ -158,6 +185,11 @@ class RunStart(LatticeStart):
         return checked(case, key, checkpoint.part(arrays, "engine/")["states"])
 
 
+def kind_of(case: Case) -> type[np.integer]:
+    """The type of a state in memory: a byte, or 32 bits for heights."""
+    return np.uint8 if case.lattice.model.states() else np.int32
+
+
 def sites_of(case: Case) -> int:
     """How many sites a case has."""
     return int(np.prod(case.box.size))
@@ -174,20 +206,20 @@ def checked(case: Case, key: str, found: Any) -> States:
     if array.size != sites_of(case):
         raise CaseError(f"{key}: shape {array.shape}: expected {tuple(case.box.size)}")
     flat, names = array.ravel().astype(np.int64), case.lattice.model.states()
-    wrong = np.flatnonzero((flat < 0) | (flat >= len(names)))
+    low, high = (0, len(names) - 1) if names else (-(2**30), 2**30)
+    wrong = np.flatnonzero((flat < low) | (flat > high))
     if len(wrong):
         raise CaseError(
-            f"{key}: site {int(wrong[0])} has state {int(flat[wrong[0]])}: expected 0 to "
-            f"{len(names) - 1}"
+            f"{key}: site {int(wrong[0])} has state {int(flat[wrong[0]])}: expected {low} to {high}"
         )
-    return flat.astype(np.uint8)
+    return flat.astype(kind_of(case))
 
 
 def first_state(case: Case, arrays: Mapping[str, Any]) -> States:
     """The states (n,) to start from: those of an array, or of the case."""
     if "states" in arrays:
         return checked(case, "states", arrays["states"])
-    return case.lattice.start.states(case)
+    return case.lattice.first().states(case)
 
 
 def files_of(case: Case) -> dict[str, Path]:
@@ -200,7 +232,9 @@ def files_of(case: Case) -> dict[str, Path]:
 def _number(case: Case, key: str, name: str | None, usual: int) -> int:
     names: Sequence[str] = case.lattice.model.states()
     if name is None:
-        return min(usual, len(names) - 1)
+        return usual if len(names) != 1 else 0
+    if not names:
+        raise CaseError(f"lattice.start.{key} = {show(name)}: heights have no names; leave it out")
     if name not in names:
         raise CaseError(
             f"lattice.start.{key} = {show(name)}: expected {one_of(names)}{nearest(name, names)}"

@@ -13,6 +13,7 @@ from mesokit.method.kinetic_monte_carlo.engine.classes import classes_of
 from mesokit.method.kinetic_monte_carlo.engine.events import CLOCK, NEXT, Course, begin, events
 from mesokit.method.kinetic_monte_carlo.engine.pairs import count_pairs
 from mesokit.method.kinetic_monte_carlo.lattice.grid import Sites, by_number, grid_of, length_of
+from mesokit.method.kinetic_monte_carlo.start import kind_of
 from mesokit.seam.engine import Integers, State
 
 
@@ -28,7 +29,7 @@ class Events:
         self.model, self.places = given.model.kernel(kind, any(closed)), by_number(grid)
         self.states = len(given.model.states())
         self.n, memory = len(self.places), length_of(grid)
-        self.lattice = Sites(grid, np.zeros(memory, np.uint8), np.zeros(memory, np.uint16))
+        self.lattice = Sites(grid, np.zeros(memory, kind_of(case)), np.zeros(memory, np.uint16))
         self.classes = classes_of(self.model.rates, memory)
         shape = len(given.model.events()), kind.neighbours + 1
         self.course = Course(

@@ -40,12 +40,12 @@ class Exclusion(TableModel):
 
     def processes(self) -> list[Process]:
         """Hops, and what happens at the ends."""
-        out = (OUTSIDE, OUTSIDE)
+        out = (OUTSIDE,), OUTSIDE
         return [
             Process("enter", (EMPTY, FULL), self.enter, (), out, BACKWARD),
             Process("enter last", (EMPTY, FULL), self.enter_last, (), out, FORWARD),
-            Process("forward", (FULL, EMPTY), self.forward, (), (EMPTY, FULL), FORWARD),
-            Process("backward", (FULL, EMPTY), self.backward, (), (EMPTY, FULL), BACKWARD),
+            Process("forward", (FULL, EMPTY), self.forward, (), ((EMPTY,), FULL), FORWARD),
+            Process("backward", (FULL, EMPTY), self.backward, (), ((EMPTY,), FULL), BACKWARD),
             Process("leave", (FULL, EMPTY), self.leave, (), out, FORWARD),
             Process("leave first", (FULL, EMPTY), self.leave_first, (), out, BACKWARD),
         ]

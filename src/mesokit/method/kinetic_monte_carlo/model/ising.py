@@ -39,8 +39,8 @@ class Ising(TableModel):
     def processes(self) -> list[Process]:
         """Flips up and down."""
         return [
-            Process("up", (DOWN, UP), self._rate(DOWN), (DOWN, UP)),
-            Process("down", (UP, DOWN), self._rate(UP), (DOWN, UP)),
+            Process("up", (DOWN, UP), self._rate(DOWN), ((DOWN,), (UP,))),
+            Process("down", (UP, DOWN), self._rate(UP), ((DOWN,), (UP,))),
         ]
 
     def _rate(self, state: int) -> Callable[[Counts], float]:

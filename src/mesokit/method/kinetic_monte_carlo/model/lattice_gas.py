@@ -104,20 +104,24 @@ class LatticeGas(TableModel):
             before, after = (number[part.strip()] for part in text.split("->"))
             return before, after
 
+        def beside(text: str) -> tuple[tuple[int, ...], int]:
+            before, after = turn(text)
+            return (before,), after
+
         return [
             Process(
                 one.name,
                 turn(one.site),
                 self._rate(one, [number[name] for name in one.bonded]),
-                tuple(number[name] for name in one.bonded),
-                None if one.neighbour is None else turn(one.neighbour),
+                (tuple(number[name] for name in one.bonded),) if one.bonded else (),
+                None if one.neighbour is None else beside(one.neighbour),
             )
             for one in self.process
         ]
 
     def _rate(self, one: GasProcess, bonded: list[int]) -> Callable[[Counts], float]:
         def rate(counts: Counts) -> float:
-            bonds = sum(counts[state] for state in bonded)
+            bonds = counts[bonded[0]] if bonded else 0
             return one.rate * math.exp(-(one.barrier + bonds * one.bond) / self.kT)
 
         return rate

@@ -31,7 +31,7 @@ class Model(ABC):
 
     @abstractmethod
     def states(self) -> tuple[str, ...]:
-        """Names of the states of a site, by their numbers."""
+        """Names of the states of a site, by their numbers; none where these are heights."""
 
     @abstractmethod
     def kernel(self, kind: Kind, ends: bool) -> Any:

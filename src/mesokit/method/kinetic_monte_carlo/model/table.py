@@ -1,8 +1,8 @@
 """Models as tables: processes of a site, or of a site and a neighbour, and their rates.
 
-A process changes the state of a site, and of one neighbour if it has one. Its rate may depend on
-how many neighbours are in which states. All rates of a site then follow from one number, that of
-its surroundings: a sum over the neighbours of weights that depend on both states.
+The rate of a process may depend on how many neighbours are in which states. All rates of a site
+then follow from one number, that of its surroundings: a sum over the neighbours of weights that
+depend on both states. When one neighbour changes, one difference of weights is added to it.
 """
 
 from __future__ import annotations
@@ -35,17 +35,24 @@ class Process(NamedTuple):
 
     name: in results. site: its state before and after. rate: events in a unit of time, for each
     neighbour that takes part; or a function of the numbers of neighbours in each state, the last
-    of which is that of the missing ones. counted: the states on whose numbers it depends.
-    neighbour: state of a neighbour before and after; the state after the last stands for none.
-    directions: of that neighbour (all unless said).
+    of which is that of the missing ones. counted: groups of states on whose numbers it depends;
+    the first of a group has the number of all.
+    neighbour: states of a neighbour that may take part, and that after it; the state after the last
+    one stands for a missing neighbour. directions: of that neighbour (all unless said).
     """
 
     name: str
     site: tuple[int, int]
     rate: float | Callable[[Counts], float]
-    counted: tuple[int, ...] = ()
-    neighbour: tuple[int, int] | None = None
+    counted: tuple[tuple[int, ...], ...] = ()
+    neighbour: tuple[tuple[int, ...], int] | None = None
     directions: tuple[int, ...] | None = None
+
+    def takes(self, direction: int, state: int) -> bool:
+        """Whether a neighbour in a direction and a state takes part."""
+        if self.neighbour is None or state not in self.neighbour[0]:
+            return False
+        return self.directions is None or direction in self.directions
 
 
 @component
@@ -54,11 +61,17 @@ class TableModel(Model, ABC):
 
     @abstractmethod
     def processes(self) -> list[Process]:
-        """What may happen, by the state of the site that it begins with."""
+        """What may happen."""
 
     def kernel(self, kind: Kind, ends: bool) -> Table:
         """The table of the processes."""
-        return table_of(self.processes(), len(self.states()), kind, ends)
+        number, ordered = len(self.states()), in_order(self.processes())
+        return Table(
+            number,
+            np.array([one.site[1] for one in ordered]),
+            np.array([-1 if one.neighbour is None else one.neighbour[1] for one in ordered]),
+            *rates_of(ordered, number, number, kind, ends),
+        )
 
     def events(self) -> list[str]:
         """Names of the processes."""
@@ -68,23 +81,39 @@ class TableModel(Model, ABC):
 class Table(NamedTuple):
     """Processes as kernels take them.
 
-    number: states a site may have. first: (number,) of surroundings with each state. weights:
-    (neighbours * number * (number + 1),) by direction, state and the neighbour's. rates: (m,) of
-    all processes together, by surroundings. shares: (m * processes,), for each neighbour of those
-    that have one. begin: (number + 1,) first process of each state. before, after: of the
-    neighbour, -1 for none. turns: state of the site after. ways: a bit for each direction.
+    number: states a site may have. new, beside: (processes,) states of the site and of the
+    neighbour after each. The others are those of `Rates`.
     """
 
     number: int
+    new: NDArray[np.int64]
+    beside: NDArray[np.int64]
+    begin: NDArray[np.int64]
     first: NDArray[np.int32]
     weights: NDArray[np.int32]
     rates: NDArray[np.float64]
     shares: NDArray[np.float64]
+    fits: NDArray[np.int64]
+    towards: NDArray[np.int64]
+
+
+class Rates(NamedTuple):
+    """The rates of processes that are in the order of their states, by surroundings.
+
+    begin: (states + 1,) first process of each state. first: (states,) number of surroundings with
+    each state. weights: (neighbours * states * (others + 1),) by direction, state of the site and
+    state of the neighbour. rates: (m,) of all processes together. shares: (m * processes,), for
+    each neighbour that takes part. fits: (processes,) a bit for each state of a neighbour that may
+    take part, 0 without a neighbour. towards: a bit for each direction.
+    """
+
     begin: NDArray[np.int64]
-    turns: NDArray[np.int64]
-    before: NDArray[np.int64]
-    after: NDArray[np.int64]
-    ways: NDArray[np.int64]
+    first: NDArray[np.int32]
+    weights: NDArray[np.int32]
+    rates: NDArray[np.float64]
+    shares: NDArray[np.float64]
+    fits: NDArray[np.int64]
+    towards: NDArray[np.int64]
 
 
 def in_order(processes: Sequence[Process]) -> list[Process]:
@@ -92,93 +121,84 @@ def in_order(processes: Sequence[Process]) -> list[Process]:
     return sorted(processes, key=lambda one: one.site[0])
 
 
-def table_of(processes: Sequence[Process], number: int, kind: Kind, ends: bool) -> Table:
-    """The table of processes on a lattice with so many states of a site."""
-    ordered, z = in_order(processes), kind.neighbours
-    first, rates, shares = np.zeros(number, np.int32), [], []
-    weights = np.zeros((z, number, number + 1), np.int32)
-    for state in range(number):
+def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, ends: bool) -> Rates:
+    """The rates of processes on a lattice, with so many states of a site and of a neighbour."""
+    z = kind.neighbours
+    first, rates, shares = np.zeros(states, np.int32), [], []
+    weights = np.zeros((z, states, others + 1), np.int32)
+    for state in range(states):
         own = [(p, one) for p, one in enumerate(ordered) if one.site[0] == state]
         first[state] = len(rates)
-        features, sizes = _features(own, number, z, ends)
-        place_of = np.cumprod([1, *(size + 1 for size in sizes)])
-        if len(rates) + place_of[-1] > MOST:
+        features, most = _features(own, others, z, ends)
+        strides = np.cumprod([1, *(number + 1 for number in most)])
+        if len(rates) + strides[-1] > MOST:
             raise CaseError(
-                f"lattice.model: {len(rates) + place_of[-1]} kinds of surroundings of a site; "
+                f"lattice.model: {len(rates) + strides[-1]} kinds of surroundings of a site; "
                 f"expected at most {MOST}"
             )
         for (k, b), feature in features.items():
-            if feature >= 0:
-                weights[k, state, b] = place_of[feature]
+            weights[k, state, b] = strides[feature] if feature >= 0 else 0
         all_matter = -1 not in features.values()  # then each neighbour is of some feature
-        for found in itertools.product(*(range(size + 1) for size in reversed(sizes))):
-            share = np.zeros(len(ordered))
-            total = 0.0
-            if sum(found) == z if all_matter else sum(found) <= z:
-                counts, partners = _counts(found[::-1], features, own, number)
+        for counts in itertools.product(*(range(number + 1) for number in reversed(most))):
+            share, total = np.zeros(len(ordered)), 0.0
+            if sum(counts) == z if all_matter else sum(counts) <= z:
+                found, partners = _counts(counts[::-1], features, own, others)
                 for p, one in own:
-                    share[p] = one.rate(counts) if callable(one.rate) else one.rate
+                    share[p] = one.rate(found) if callable(one.rate) else one.rate
                     total += share[p] * (1 if one.neighbour is None else partners[p])
             rates.append(total)
             shares.append(share)
-    begin = np.searchsorted([one.site[0] for one in ordered], range(number + 1))
-    pairs = [one.neighbour or (-1, -1) for one in ordered]
+    begin = np.searchsorted([one.site[0] for one in ordered], range(states + 1))
+    partner = [() if one.neighbour is None else one.neighbour[0] for one in ordered]
     every = range(z)
-    return Table(
-        number,
+    return Rates(
+        begin.astype(np.int64),
         first,
         weights.ravel(),
         np.array(rates),
         np.array(shares).ravel(),
-        begin.astype(np.int64),
-        np.array([one.site[1] for one in ordered]),
-        np.array([before for before, _ in pairs]),
-        np.array([after for _, after in pairs]),
+        np.array([sum(1 << b for b in some) for some in partner]),
         np.array([sum(1 << k for k in (one.directions or every)) for one in ordered]),
     )
 
 
 def _features(
-    own: Sequence[tuple[int, Process]], number: int, z: int, ends: bool
+    own: Sequence[tuple[int, Process]], others: int, z: int, ends: bool
 ) -> tuple[dict[tuple[int, int], int], list[int]]:
     """Which neighbours are alike for the processes of a state: a number for each direction and
     state of the neighbour, -1 where it does not matter; and how many neighbours may have it."""
-    counted = {state for _, one in own for state in one.counted}
     alike: dict[object, int] = {}
-    found, most = {}, {}
-    for k, b in itertools.product(range(z), range(number + ends)):
-        takes_part = tuple(
-            p
-            for p, one in own
-            if one.neighbour is not None
-            and one.neighbour[0] == b
-            and (one.directions is None or k in one.directions)
-        )
-        if not takes_part and b not in counted:
+    found: dict[tuple[int, int], int] = {}
+    where: list[set[int]] = []
+    for k, b in itertools.product(range(z), range(others + ends)):
+        takes_part = tuple(p for p, one in own if one.takes(k, b))
+        counted = tuple(some for _, one in own for some in one.counted if b in some)
+        if not takes_part and not counted:
             found[k, b] = -1
             continue
-        feature = alike.setdefault((takes_part, b), len(alike))
-        found[k, b] = feature
-        most.setdefault(feature, set()).add(k)
-    return found, [len(most[feature]) for feature in range(len(alike))]
+        found[k, b] = alike.setdefault((takes_part, counted), len(alike))
+        if found[k, b] == len(where):
+            where.append(set())
+        where[found[k, b]].add(k)
+    return found, [len(directions) for directions in where]
 
 
 def _counts(
-    found: Sequence[int],
+    counts: Sequence[int],
     features: dict[tuple[int, int], int],
     own: Sequence[tuple[int, Process]],
-    number: int,
+    others: int,
 ) -> tuple[list[int], dict[int, int]]:
-    """Neighbours in each state, and those that take part in each process."""
-    counts, partners = [0] * (number + 1), {p: 0 for p, _ in own}
-    for feature, how_many in enumerate(found):
+    """Neighbours in each state, or in one of those that are alike, and those that take part."""
+    found, partners = [0] * (others + 1), {p: 0 for p, _ in own}
+    for feature, number in enumerate(counts):
         k, b = next(key for key, one in features.items() if one == feature)
-        counts[b] += how_many
+        groups = {some for _, one in own for some in one.counted if b in some}
+        for some in groups:
+            found[some[0]] += number
         for p, one in own:
-            if one.neighbour is not None and one.neighbour[0] == b:
-                if one.directions is None or k in one.directions:
-                    partners[p] += how_many
-    return counts, partners
+            partners[p] += number * one.takes(k, b)
+    return found, partners
 
 
 @surroundings.register(Table)
@@ -204,21 +224,21 @@ def _(model, sites, i, direction, old, new):
 def _(model, sites, i, u):
     # the processes of this state, one neighbour after the other, until their rates make up u of all
     state, around = np.int64(sites.states[i]), np.int64(sites.around[i])
-    left, row = u * model.rates[around], around * len(model.turns)
-    last, towards, target = 0, -1, -1
+    left, row = u * model.rates[around], around * len(model.new)
+    last, chosen, target = 0, -1, -1
     for p in range(model.begin[state], model.begin[state + 1]):
         rate = model.shares[row + p]
-        if rate > 0.0 and model.before[p] < 0:
-            last, towards, left = p, -1, left - rate
+        if rate > 0.0 and model.fits[p] == 0:
+            last, chosen, left = p, -1, left - rate
         elif rate > 0.0:
             for direction in range(sites.grid.neighbours):
-                if (model.ways[p] >> direction) & 1:
+                if (model.towards[p] >> direction) & 1:
                     j = neighbour(sites.grid, i, direction)
                     there = np.int64(sites.states[j]) if j >= 0 else model.number
-                    if there == model.before[p]:
-                        last, towards, target, left = p, direction, j, left - rate
+                    if (model.fits[p] >> there) & 1:
+                        last, chosen, target, left = p, direction, j, left - rate
                         if left < 0.0:
                             break
         if left < 0.0:
             break
-    return last, model.turns[last], towards, target, model.after[last]
+    return last, model.new[last], chosen, target, model.beside[last]

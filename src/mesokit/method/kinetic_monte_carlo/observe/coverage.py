@@ -6,7 +6,8 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from mesokit.case.case import Case
-from mesokit.case.component import component, tag
+from mesokit.case.component import component, name_of, show, tag
+from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.expected import coverages
 from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
@@ -25,6 +26,14 @@ class Coverage(LatticeObservable):
     quantity: Literal["coverage"] = tag("coverage")
     drawing, value_label = "path", "part of the sites"
     units: ClassVar[dict[str, str]] = {"time": "tau"}
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for heights, which are not covered or empty."""
+        super().check(case)
+        if not case.lattice.model.states():
+            raise CaseError(
+                f"model {show(name_of(case.lattice.model))} has heights; expected 'roughness'"
+            )
 
 
 @accumulator_of(Coverage)

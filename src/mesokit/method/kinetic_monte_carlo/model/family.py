@@ -1,0 +1,24 @@
+"""Deposition with relaxation: atoms that roll to the lowest column beside (Family 1986)."""
+
+from typing import Literal
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.model.heights import LOWEST, Growth, HeightModel
+from mesokit.method.kinetic_monte_carlo.model.table import Process
+
+
+@component
+class Family(HeightModel):
+    """Atoms stay at the lowest of the site where they come down and its neighbours.
+
+    The width grows as t^(1/4) in 1 + 1 dimensions, as in the theory of Edwards and Wilkinson
+    (1982). Source: F. Family, J. Phys. A 19, L441 (1986).
+    """
+
+    rule: Literal["family"] = tag("family")
+    flux: float = param(1.0, doc="atoms for each site", symbol="F", unit="1/time", gt=0)
+
+    def growth(self, kind: Kind) -> list[Growth]:
+        """Deposition anywhere, and a step down."""
+        return [Growth(Process("deposit", (0, 0), self.flux), 1, stays=LOWEST)]

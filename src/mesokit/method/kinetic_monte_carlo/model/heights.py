@@ -1,0 +1,170 @@
+"""Models of growth: columns of atoms on the sites, whose heights change.
+
+All that counts of a neighbour is how much higher or lower its column is, up to a few atoms.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component
+from mesokit.method.kinetic_monte_carlo.lattice.grid import neighbour
+from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.model.protocol import (
+    Model,
+    process_of,
+    surroundings,
+    surroundings_after,
+)
+from mesokit.method.kinetic_monte_carlo.model.table import Process, rates_of
+from mesokit.scalar.jit import scalar
+
+FAR = 3  # atoms: larger differences of heights are as good as this
+LEVEL = FAR  # the place of a neighbour that is as high, among the differences from -FAR to FAR
+LOWER, HIGHER = tuple(range(LEVEL)), tuple(range(LEVEL + 1, 2 * FAR + 1))
+AT_LEAST_AS_HIGH, ANY = (LEVEL, *HIGHER), tuple(range(2 * FAR + 1))
+# where an atom that comes down stays: at its site, at the lowest of the site and its neighbours, or
+# where it first touches the column or one beside it
+HERE, LOWEST, BESIDE = 0, 1, 2
+
+
+class Growth(NamedTuple):
+    """A process of a column, and of one beside it.
+
+    process: its states of neighbours are differences of heights, from -FAR to FAR, with LEVEL in the
+    middle. site, beside: atoms that the two columns gain. stays: HERE, LOWEST or BESIDE.
+    """
+
+    process: Process
+    site: int
+    beside: int = 0
+    stays: int = HERE
+
+
+@component
+class HeightModel(Model, ABC):
+    """A model of growth."""
+
+    @abstractmethod
+    def growth(self, kind: Kind) -> list[Growth]:
+        """What may happen."""
+
+    def states(self) -> tuple[str, ...]:
+        """None have names: the state of a site is its height."""
+        return ()
+
+    def kernel(self, kind: Kind, ends: bool) -> Heights:
+        """The table of the processes."""
+        found = self.growth(kind)
+        processes = [one.process for one in found]
+        return Heights(
+            np.array([one.site for one in found]),
+            np.array([one.beside for one in found]),
+            np.array([one.stays for one in found]),
+            *rates_of(processes, 1, 2 * FAR + 1, kind, ends),
+        )
+
+    def events(self) -> list[str]:
+        """Names of the processes."""
+        from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
+
+        return [one.process.name for one in self.growth(KINDS["square"])]
+
+
+class Heights(NamedTuple):
+    """Processes of growth as kernels take them.
+
+    site, beside, stays: (processes,) of `Growth`. The others are those of `Rates`.
+    """
+
+    site: NDArray[np.int64]
+    beside: NDArray[np.int64]
+    stays: NDArray[np.int64]
+    begin: NDArray[np.int64]
+    first: NDArray[np.int32]
+    weights: NDArray[np.int32]
+    rates: NDArray[np.float64]
+    shares: NDArray[np.float64]
+    fits: NDArray[np.int64]
+    towards: NDArray[np.int64]
+
+
+@scalar
+def _difference(height, other):
+    """Where the height of a neighbour stands among the differences."""
+    return min(max(other - height, -FAR), FAR) + FAR
+
+
+@surroundings.register(Heights)
+def _(model, sites, i):
+    height, around = np.int64(sites.states[i]), np.int64(0)
+    for direction in range(sites.grid.neighbours):
+        j = neighbour(sites.grid, i, direction)
+        other = _difference(height, np.int64(sites.states[j])) if j >= 0 else 2 * FAR + 1
+        around += model.weights[direction * (2 * FAR + 2) + other]
+    return around
+
+
+@surroundings_after.register(Heights)
+def _(model, sites, i, direction, old, new):
+    height, row = np.int64(sites.states[i]), direction * (2 * FAR + 2)
+    before = np.int64(model.weights[row + _difference(height, old)])
+    return np.int64(sites.around[i]) + model.weights[row + _difference(height, new)] - before
+
+
+@process_of.register(Heights)
+def _(model, sites, i, u):
+    height, around = np.int64(sites.states[i]), np.int64(sites.around[i])
+    left, row = u * model.rates[around], around * len(model.site)
+    last, chosen, target, rate = 0, -1, -1, 1.0
+    for p in range(len(model.site)):
+        share = model.shares[row + p]
+        if share > 0.0 and model.fits[p] == 0:
+            last, chosen, rate, left = p, -1, share, left - share
+        elif share > 0.0:
+            for direction in range(sites.grid.neighbours):
+                j = neighbour(sites.grid, i, direction)
+                if j >= 0:
+                    there = _difference(height, np.int64(sites.states[j]))
+                    if (model.fits[p] >> there) & 1:
+                        last, chosen, target, rate, left = p, direction, j, share, left - share
+                        if left < 0.0:
+                            break
+        if left < 0.0:
+            break
+    if chosen >= 0:
+        return (
+            last,
+            height + model.site[last],
+            chosen,
+            target,
+            (np.int64(sites.states[target]) + model.beside[last]),
+        )
+    if model.stays[last] == LOWEST:
+        # among columns as low as the lowest, by what is left of the random number; first the site
+        lowest, ties, here = height, 0, True
+        for direction in range(sites.grid.neighbours):
+            j = neighbour(sites.grid, i, direction)
+            if j >= 0 and np.int64(sites.states[j]) < lowest:
+                lowest, ties, here = np.int64(sites.states[j]), 0, False
+            if j >= 0 and np.int64(sites.states[j]) == lowest:
+                ties += 1
+        if not here:
+            rank = min(np.int64((left / rate + 1.0) * ties), ties - 1)
+            for direction in range(sites.grid.neighbours):
+                j = neighbour(sites.grid, i, direction)
+                if j >= 0 and np.int64(sites.states[j]) == lowest:
+                    if rank == 0:
+                        return last, height, direction, j, lowest + 1
+                    rank -= 1
+    top = height + model.site[last]
+    if model.stays[last] == BESIDE:
+        for direction in range(sites.grid.neighbours):
+            j = neighbour(sites.grid, i, direction)
+            if j >= 0:
+                top = max(top, np.int64(sites.states[j]))
+    return last, top, -1, -1, 0

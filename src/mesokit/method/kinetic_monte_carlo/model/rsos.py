@@ -1,0 +1,28 @@
+"""Growth of restricted solids on solids: no step is higher than an atom (Kim, Kosterlitz 1989)."""
+
+from typing import Literal
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.model.heights import LOWER, Counts, Growth, HeightModel
+from mesokit.method.kinetic_monte_carlo.model.table import Process
+
+
+@component
+class RestrictedSolidOnSolid(HeightModel):
+    """Atoms come down only where no step becomes higher than one atom.
+
+    The width grows as t^(1/3) in 1 + 1 dimensions, as that of Kardar, Parisi and Zhang (1986).
+    Source: J. M. Kim and J. M. Kosterlitz, Phys. Rev. Lett. 62, 2289 (1989).
+    """
+
+    rule: Literal["rsos"] = tag("rsos")
+    flux: float = param(1.0, doc="atoms for each site", symbol="F", unit="1/time", gt=0)
+
+    def growth(self, kind: Kind) -> list[Growth]:
+        """Deposition where no neighbour is lower."""
+
+        def rate(counts: Counts) -> float:
+            return 0.0 if counts[LOWER[0]] else self.flux
+
+        return [Growth(Process("deposit", (0, 0), rate, (LOWER,)), 1)]

@@ -1,0 +1,109 @@
+"""Roughness of a surface: its width in time, and how fast that grows."""
+
+import math
+from collections.abc import Iterator
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.case import Case
+from mesokit.case.component import component, name_of, show, tag
+from mesokit.errors import CaseError
+from mesokit.method.kinetic_monte_carlo.expected import growth_exponent, width
+from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
+from mesokit.seam.observable import BlockAccumulator, accumulator_of
+from mesokit.seam.result import Comparison, Result
+from mesokit.statistics import TimeSeries
+
+PARTS = 16  # of the lattice along x, whose scatter is the error
+FEWEST = 10  # points of a fit
+DECADE = 10.0  # the last times of a run, over which the exponent is fitted
+
+
+@component
+class Roughness(LatticeObservable):
+    """Width of a surface in time, the root mean square of the heights about their mean.
+
+    Its exponent is that of a power of time over the last decade of the run. Errors come from the
+    scatter between 16 parts of the lattice, which should be longer than heights are correlated.
+    """
+
+    quantity: Literal["roughness"] = tag("roughness")
+    drawing, value_label = "roughness", "width"
+    units: ClassVar[dict[str, str]] = {"time": "tau", "value": "a"}
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for a model without heights, and for a short lattice."""
+        super().check(case)
+        if case.lattice.model.states():
+            raise CaseError(
+                f"model {show(name_of(case.lattice.model))} has no heights; leave it out"
+            )
+        if case.box.size[0] < PARTS:
+            raise CaseError(f"box.size: expected at least {PARTS} sites along x")
+
+
+@accumulator_of(Roughness)
+class RoughnessAccumulator(BlockAccumulator):
+    """Mean height, and mean square deviations from it in parts of the lattice, in time."""
+
+    memory: ClassVar[tuple[str, ...]] = ("series",)
+
+    def prepare(self) -> None:
+        self.series = TimeSeries(1 + PARTS)
+
+    def observe(self, engine: RunningLattice) -> None:
+        heights = engine.sites().astype(float)
+        mean = heights.mean()
+        rows = ((heights - mean) ** 2).reshape(int(self.case.box.size[0]), -1).mean(axis=1)
+        edges = np.linspace(0, len(rows), PARTS + 1).astype(int)
+        parts = np.add.reduceat(rows, edges[:-1]) * (PARTS / len(rows))
+        self.series.add(engine.time, [mean, *parts])
+
+    def result(self) -> Result:
+        time, rows = self.series.time(), self.series.values()
+        square, error = _mean(rows[:, 1:])
+        value = np.sqrt(square)
+        expected, note = width(self.case, time)
+        return self.report(
+            {"time": time},
+            (value, error / np.where(value > 0, 2 * value, np.inf)),
+            self.comparisons(time, rows),
+            samples=len(time),
+            expected=expected,
+            theory=note,
+        )
+
+    def comparisons(self, time: NDArray, rows: NDArray) -> Iterator[Comparison]:
+        """Speed of growth, exponent and last width."""
+        if len(time) < 2:
+            return
+        speed = (rows[-1, 0] - rows[len(rows) // 2, 0]) / (time[-1] - time[len(rows) // 2])
+        yield Comparison("speed of growth", speed, math.nan, unit="1/time", note="second half")
+        late = (time > time[-1] / DECADE) & (rows[:, 1:].min(axis=1) > 0)
+        known, note = growth_exponent(self.case)
+        if late.sum() >= FEWEST:
+            exponents = [_exponent(time[late], rows[late, 1:])]
+            for k in range(PARTS):  # without one part each (jackknife)
+                exponents.append(_exponent(time[late], np.delete(rows[late, 1:], k, axis=1)))
+            first, others = exponents[0], np.array(exponents[1:])
+            error = math.sqrt((PARTS - 1) * float(others.var()))
+            yield Comparison("growth exponent", first, error, known, "", note)
+        square, error = _mean(rows[-1:, 1:])
+        expected, note = width(self.case, time[-1:])
+        last = float(expected[0] ** 2) if expected is not None else math.nan
+        yield Comparison("last mean square width", square[0], error[0], last, "a^2", note)
+
+
+def _mean(parts: NDArray) -> tuple[NDArray, NDArray]:
+    """Mean over parts of the lattice, and its standard error."""
+    return parts.mean(axis=1), parts.std(axis=1, ddof=1) / math.sqrt(parts.shape[1])
+
+
+def _exponent(time: NDArray, parts: NDArray) -> float:
+    """Slope of the logarithm of the width over that of time, with equal weights of equal ratios of
+    times."""
+    x, y = np.log(time), 0.5 * np.log(parts.mean(axis=1))
+    weight = np.sqrt(np.gradient(x)) if len(x) > 1 else np.ones(1)
+    return float(np.polyfit(x, y, 1, w=weight)[0])
