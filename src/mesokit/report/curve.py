@@ -67,15 +67,14 @@ def draw_path(result: Result, ax: Any) -> None:
     """A number in time as a thin line over the broad one of theory, or several with their names."""
     time, several = result.x["time"], result.value.ndim == 2
     names = result.x[list(result.x)[1]] if several else ("measured",)
-    columns = [np.reshape(result.value, (len(time), -1)), None]
-    if result.expected is not None:
-        columns[1] = np.reshape(result.expected, (len(time), -1))
-    for k, name in enumerate(names[:SHOWN]):
-        if columns[1] is not None:
+    columns = np.reshape(result.value, (len(time), -1)).T
+    for k, (name, column) in enumerate(zip(names[:SHOWN], columns, strict=False)):
+        if result.expected is not None:
             theory = theory_of(result) if k == 0 else None
-            ax.plot(time, columns[1][:, k], color="0.7", lw=3.5, label=theory, zorder=1)
+            known = np.reshape(result.expected, (len(time), -1))[:, k]
+            ax.plot(time, known, color="0.7", lw=3.5, label=theory, zorder=1)
         look: Any = {"color": COLOURS[k], "ls": LINES[k], "lw": 1, "zorder": 2}
-        ax.plot(time, columns[0][:, k], label=str(name), **look)
+        ax.plot(time, column, label=str(name), **look)
     time_axis(ax, time, result.units["time"])
     ax.set_ylabel(labelled(result.label, result.units["value"]))
     legend_above(ax)

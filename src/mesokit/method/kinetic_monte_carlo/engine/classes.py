@@ -24,8 +24,9 @@ class Classes(NamedTuple):
     """Sites by class.
 
     of: (memory,) class of each site, IDLE if nothing can happen there. by_surroundings: (m,) class
-    of sites with these. rates: (classes,) of each site of a class. numbers: (classes,) of sites. tree: counts of each class in
-    each node, level by level, 16 nodes side by side; levels: where each begins.
+    of sites with these. rates: (classes,) of each site of a class. numbers: (classes,) of sites.
+    tree: counts of each class in each node, level by level, 16 nodes side by side; levels: where
+    each begins.
     """
 
     of: NDArray[np.uint8]
@@ -115,9 +116,9 @@ def _nth(classes, c, rank):
         # without a branch: which of the 16 is as good as random
         up_to, before, below = 0, 0, 0
         for k in range(FAN):
-            up_to += np.int64(classes.tree[base + k])
+            up_to += classes.tree[base + k]
             passed = up_to <= rank
-            below += np.int64(passed)
+            below += 1 if passed else 0
             before = up_to if passed else before
         node, rank = (node << 4) | below, rank - before
     i = node << 8

@@ -47,7 +47,7 @@ def grid_of(kind: Kind, size: tuple[int, ...], closed: tuple[bool, ...]) -> Grid
     sides = np.array([1 << b for b in bits])
     tiles = tuple(int(-(-length // side)) for length, side in zip(size, sides, strict=True))
     parity = tuple(-axis for axis in kind.parity)
-    within = np.indices(sides).reshape(d, -1).T  # (256, d), by place in the tile
+    within = np.indices(tuple(sides.tolist())).reshape(d, -1).T  # (256, d), by place in the tile
     odd = (within @ np.array(kind.parity)) % 2  # sides are even: the parity is that of the lattice
     towards = within[:, None, :] + kind.shifts[odd]
     inside = ((towards >= 0) & (towards < sides)).all(axis=-1)

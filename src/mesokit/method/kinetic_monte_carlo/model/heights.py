@@ -35,8 +35,8 @@ HERE, LOWEST, BESIDE = 0, 1, 2
 class Growth(NamedTuple):
     """A process of a column, and of one beside it.
 
-    process: its states of neighbours are differences of heights, from -FAR to FAR, with LEVEL in the
-    middle. site, beside: atoms that the two columns gain. stays: HERE, LOWEST or BESIDE.
+    process: its states of neighbours are differences of heights, from -FAR to FAR, with LEVEL in
+    the middle. site, beside: atoms that the two columns gain. stays: HERE, LOWEST or BESIDE.
     """
 
     process: Process
@@ -96,7 +96,9 @@ class Heights(NamedTuple):
 @scalar
 def _difference(height, other):
     """Where the height of a neighbour stands among the differences."""
-    return min(max(other - height, -FAR), FAR) + FAR
+    higher = other - height
+    higher = higher if higher > -FAR else -FAR
+    return (higher if higher < FAR else FAR) + FAR
 
 
 @surroundings.register(Heights)
@@ -146,7 +148,7 @@ def _(model, sites, i, u):
         )
     if model.stays[last] == LOWEST:
         # among columns as low as the lowest, by what is left of the random number; first the site
-        lowest, ties, here = height, 0, True
+        lowest, ties, here = np.int64(height), 0, True
         for direction in range(sites.grid.neighbours):
             j = neighbour(sites.grid, i, direction)
             if j >= 0 and np.int64(sites.states[j]) < lowest:

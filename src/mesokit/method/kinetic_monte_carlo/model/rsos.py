@@ -4,8 +4,8 @@ from typing import Literal
 
 from mesokit.case.component import component, param, tag
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
-from mesokit.method.kinetic_monte_carlo.model.heights import LOWER, Counts, Growth, HeightModel
-from mesokit.method.kinetic_monte_carlo.model.table import Process
+from mesokit.method.kinetic_monte_carlo.model.heights import LOWER, Growth, HeightModel
+from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
 
 
 @component

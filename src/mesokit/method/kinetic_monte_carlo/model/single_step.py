@@ -8,11 +8,10 @@ from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.model.heights import (
     HIGHER,
     LOWER,
-    Counts,
     Growth,
     HeightModel,
 )
-from mesokit.method.kinetic_monte_carlo.model.table import Process
+from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
 
 
 @component

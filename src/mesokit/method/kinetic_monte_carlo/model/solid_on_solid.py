@@ -9,11 +9,10 @@ from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.model.heights import (
     AT_LEAST_AS_HIGH,
     LEVEL,
-    Counts,
     Growth,
     HeightModel,
 )
-from mesokit.method.kinetic_monte_carlo.model.table import Process
+from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
 
 DOWN = tuple(range(LEVEL - 1))  # columns two atoms lower or more: a hop onto one loses a level
 

@@ -124,7 +124,9 @@ def in_order(processes: Sequence[Process]) -> list[Process]:
 def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, ends: bool) -> Rates:
     """The rates of processes on a lattice, with so many states of a site and of a neighbour."""
     z = kind.neighbours
-    first, rates, shares = np.zeros(states, np.int32), [], []
+    first = np.zeros(states, np.int32)
+    rates: list[float] = []
+    shares: list[NDArray[np.float64]] = []
     weights = np.zeros((z, states, others + 1), np.int32)
     for state in range(states):
         own = [(p, one) for p, one in enumerate(ordered) if one.site[0] == state]

@@ -90,10 +90,10 @@ class RoughnessAccumulator(BlockAccumulator):
             first, others = exponents[0], np.array(exponents[1:])
             error = math.sqrt((PARTS - 1) * float(others.var()))
             yield Comparison("growth exponent", first, error, known, "", note)
-        square, error = _mean(rows[-1:, 1:])
+        square, errors = _mean(rows[-1:, 1:])
         expected, note = width(self.case, time[-1:])
         last = float(expected[0] ** 2) if expected is not None else math.nan
-        yield Comparison("last mean square width", square[0], error[0], last, "a^2", note)
+        yield Comparison("last mean square width", square[0], errors[0], last, "a^2", note)
 
 
 def _mean(parts: NDArray) -> tuple[NDArray, NDArray]:
