@@ -84,7 +84,11 @@ def _later(clock, waiting):
 @scalar
 def _wait(clock, total, word):
     """Set the next time by a waiting time that is exponential with the rate of all events."""
-    _later(clock, -short_log(unit_open(word)) / total if total > 0.0 else np.inf)
+    if total > 0.0:
+        _later(clock, -short_log(unit_open(word)) / total)
+    else:
+        clock[TIME], clock[TIME_REST] = clock[NEXT], clock[NEXT_REST]
+        clock[NEXT], clock[NEXT_REST] = np.inf, 0.0
 
 
 @kernel

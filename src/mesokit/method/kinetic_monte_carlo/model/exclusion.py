@@ -41,7 +41,7 @@ class Exclusion(TableModel):
     def processes(self) -> list[Process]:
         """Hops, and what happens at the ends."""
         out = (OUTSIDE,), OUTSIDE
-        return [
+        every = [
             Process("enter", (EMPTY, FULL), self.enter, (), out, BACKWARD),
             Process("enter last", (EMPTY, FULL), self.enter_last, (), out, FORWARD),
             Process("forward", (FULL, EMPTY), self.forward, (), ((EMPTY,), FULL), FORWARD),
@@ -49,3 +49,4 @@ class Exclusion(TableModel):
             Process("leave", (FULL, EMPTY), self.leave, (), out, FORWARD),
             Process("leave first", (FULL, EMPTY), self.leave_first, (), out, BACKWARD),
         ]
+        return [one for one in every if one.rate]

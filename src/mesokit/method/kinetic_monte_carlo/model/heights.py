@@ -156,7 +156,8 @@ def _(model, sites, i, u):
             if j >= 0 and np.int64(sites.states[j]) == lowest:
                 ties += 1
         if not here:
-            rank = min(np.int64((left / rate + 1.0) * ties), ties - 1)
+            rank = int((left / rate + 1.0) * ties)
+            rank = rank if rank < ties else ties - 1
             for direction in range(sites.grid.neighbours):
                 j = neighbour(sites.grid, i, direction)
                 if j >= 0 and np.int64(sites.states[j]) == lowest:
@@ -168,5 +169,6 @@ def _(model, sites, i, u):
         for direction in range(sites.grid.neighbours):
             j = neighbour(sites.grid, i, direction)
             if j >= 0:
-                top = max(top, np.int64(sites.states[j]))
+                other = np.int64(sites.states[j])
+                top = other if other > top else top
     return last, top, -1, -1, 0

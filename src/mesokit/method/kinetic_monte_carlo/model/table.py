@@ -231,7 +231,7 @@ def _(model, sites, i, u):
     for p in range(model.begin[state], model.begin[state + 1]):
         rate = model.shares[row + p]
         if rate > 0.0 and model.fits[p] == 0:
-            last, chosen, left = p, -1, left - rate
+            last, chosen, target, left = p, -1, -1, left - rate
         elif rate > 0.0:
             for direction in range(sites.grid.neighbours):
                 if (model.towards[p] >> direction) & 1:

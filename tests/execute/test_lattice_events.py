@@ -1,0 +1,156 @@
+"""Events on lattices: neighbours, what is kept of each site, and bits that do not depend on how a
+run is cut."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mesokit.method.kinetic_monte_carlo.engine.classes import IDLE
+from mesokit.method.kinetic_monte_carlo.lattice.grid import by_number, grid_of, neighbour
+from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
+from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
+from mesokit.method.kinetic_monte_carlo.model.family import Family
+from mesokit.method.kinetic_monte_carlo.model.ising import Ising
+from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
+from mesokit.method.kinetic_monte_carlo.model.solid_on_solid import SolidOnSolid
+from tests.helpers.lattices import lattice_engine
+
+GAS = LatticeGas(
+    species=["empty", "A", "B"],
+    process=[
+        GasProcess(name="on", site="empty -> A", rate=1.0),
+        GasProcess(name="pair", site="empty -> B", neighbour="empty -> B", rate=0.3),
+        GasProcess(name="hop", site="A -> empty", neighbour="empty -> A", rate=2.0),
+        GasProcess(name="react", site="A -> empty", neighbour="B -> empty", rate=1.0),
+        GasProcess(name="off", site="A -> empty", rate=0.1, bond=0.4, bonded=["A", "B"]),
+    ],
+)
+MODELS = {
+    "ising": Ising(kT=1.7, field=0.1),
+    "gas": GAS,
+    "family": Family(),
+    "solid on solid": SolidOnSolid(flux=0.5, step_barrier=0.5),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_neighbours_are_at_distance_one_and_have_the_way_back(kind):
+    lattice = KINDS[kind]
+    size = (20, 18, 6)[: lattice.dimension]  # tiles stick out of it
+    grid, places = (
+        grid_of(lattice, size, (False,) * lattice.dimension),
+        lattice.places(size),
+    )
+    memory = by_number(grid)
+    number = {int(i): n for n, i in enumerate(memory)}
+    found = np.array(
+        [[number[neighbour(grid, int(i), k)] for k in range(lattice.neighbours)] for i in memory]
+    )
+    box = np.array(size) * np.array(lattice.spacing)
+    way = places[found] - places[:, None]
+    way -= box * np.rint(way / box)
+    assert np.linalg.norm(way, axis=2) == pytest.approx(np.ones(found.shape))
+    back = found[found, lattice.back[None, :]]
+    assert (back == np.arange(len(memory))[:, None]).all()
+    assert (np.sort(found, axis=1)[:, 1:] != np.sort(found, axis=1)[:, :-1]).all()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_lattice_ends_where_it_is_closed(kind):
+    lattice = KINDS[kind]
+    size = (6, 6, 4)[: lattice.dimension]
+    grid = grid_of(lattice, size, (True,) * lattice.dimension)
+    places, memory = lattice.places(size), by_number(grid)
+    number = {int(i): n for n, i in enumerate(memory)}
+    bonds = [
+        (n, number[j])
+        for n, i in enumerate(memory)
+        for k in range(lattice.neighbours)
+        if (j := neighbour(grid, int(i), k)) >= 0
+    ]
+    one, other = np.array(bonds).T
+    apart = np.linalg.norm(places[one] - places[other], axis=1)
+    assert apart == pytest.approx(np.ones(len(bonds)))
+    near = (np.linalg.norm(places[:, None] - places[None], axis=2) < 1.0001).sum() - len(places)
+    assert len(bonds) == near  # all those that are one apart, without images
+
+
+def kept(engine):
+    """What an engine keeps of its sites beside their states."""
+    classes = engine.classes
+    return [
+        engine.lattice.around[engine.places],
+        classes.of,
+        classes.numbers,
+        classes.tree,
+    ]
+
+
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("kind", ["square", "triangular", "cubic"])
+def test_what_is_kept_of_sites_is_as_if_it_were_made_anew(name, kind):
+    size = (21, 20, 6)[: KINDS[kind].dimension]
+    engine = lattice_engine(size, MODELS[name], kind=kind, ends=["x"], timestep=0.5)
+    engine.advance(12)
+    assert engine.happened().sum() > 500
+    found = [array.copy() for array in kept(engine)]
+    engine.restore(engine.state())
+    for array, anew in zip(found, kept(engine), strict=True):
+        np.testing.assert_array_equal(array, anew)
+    assert (engine.classes.of != IDLE).sum() == engine.classes.numbers.sum()
+
+
+@given(cuts=st.lists(st.integers(1, 40), min_size=1, max_size=6), seed=st.integers(0, 2**63))
+@settings(max_examples=10)
+def test_slices_of_time_change_no_bit(cuts, seed):
+    total = sum(cuts)
+    whole = lattice_engine((24, 20), GAS, timestep=0.03, seed=seed)
+    whole.advance(total)
+    cut = lattice_engine((24, 20), GAS, timestep=0.03, seed=seed)
+    for steps in cuts:
+        cut.advance(steps)
+        state = {name: array.copy() for name, array in cut.state().items()}
+        cut = lattice_engine((24, 20), GAS, timestep=0.03, seed=seed)
+        cut.restore(state)
+    for name, array in whole.state().items():
+        np.testing.assert_array_equal(array, cut.state()[name])
+    assert whole.happened().sum() > 0
+
+
+def test_the_clock_keeps_short_waits_late_in_a_run():
+    """Times of 1e9 and waits of 1e-8: a sum of doubles would lose a tenth of each of these."""
+    engine = lattice_engine((64, 64), fast_gas(), timestep=1.0)
+    engine.course.clock[:] = [1e9, 0.0, 1e9, 0.0]
+    engine.step = 10**9
+    engine.advance(1)
+    events = engine.happened().sum()
+    assert abs(events - 4096 * 1000.0) < 4 * np.sqrt(4096 * 1000.0)
+    between = engine.course.clock[2:].sum() - engine.course.clock[:2].sum()
+    assert between >= 0
+
+
+def fast_gas():
+    return LatticeGas(
+        process=[
+            GasProcess(name="on", site="empty -> A", rate=1000.0),
+            GasProcess(name="off", site="A -> empty", rate=1000.0),
+        ]
+    )
+
+
+def test_particles_are_kept_by_hops():
+    engine = lattice_engine((40,), Exclusion(backward=0.5), kind="chain")
+    before = engine.sites().sum()
+    engine.advance(50)
+    assert engine.sites().sum() == before
+    assert engine.happened().sum() > 100
+
+
+def test_an_absorbing_state_waits_for_ever():
+    gas = LatticeGas(process=[GasProcess(name="on", site="empty -> A", rate=1.0)])
+    engine = lattice_engine((8, 8), gas)
+    engine.advance(10_000)
+    assert engine.sites().all() and engine.absorbed
+    engine.advance(10)
+    assert engine.happened().sum() <= 64
