@@ -28,6 +28,7 @@ PAGES = [
     "docs/methods/brownian.md",
     "docs/methods/event_driven.md",
     "docs/methods/flock.md",
+    "docs/methods/kinetic_monte_carlo.md",
     "docs/methods/mpcd.md",
     "docs/methods/soft_spheres.md",
     "docs/methods/spheres.md",

@@ -1,0 +1,162 @@
+"""Wrong cases of kinetic Monte Carlo: each is refused with one line that names the key."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesokit import CaseError, Simulation
+from mesokit.method.kinetic_monte_carlo.model.ising import Ising
+from mesokit.method.kinetic_monte_carlo.model.rsos import RestrictedSolidOnSolid
+from tests.helpers.lattices import lattice_case
+from tests.helpers.refusals import changed, has_words, refused
+
+GOOD = """
+[run]
+steps = 10
+method = "kinetic-monte-carlo"
+[box]
+size = [12, 10]
+[lattice]
+kind = "square"
+timestep = 0.5
+start = { rule = "random" }
+[lattice.model]
+rule = "ising"
+kT = 2.0
+[[observe]]
+quantity = "magnetisation"
+"""
+GAS = """
+[run]
+steps = 10
+method = "kinetic-monte-carlo"
+[box]
+size = [12, 10]
+[lattice]
+start = { rule = "uniform" }
+[lattice.model]
+rule = "lattice-gas"
+species = ["empty", "A"]
+[[lattice.model.process]]
+name = "on"
+site = "empty -> A"
+rate = 1.0
+[[lattice.model.process]]
+name = "hop"
+site = "A -> empty"
+neighbour = "empty -> A"
+rate = 1.0
+bond = 0.5
+bonded = ["A"]
+"""
+RANDOM = '{ rule = "random" }'
+# name: (what is replaced by what in the good case, what the message must say)
+BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
+    "misspelt method": ({'"kinetic-monte-carlo"': '"kinetic-montecarlo"'}, ("run.method",)),
+    "section of another method": ({"[lattice.model]": "[fluid]\n[lattice.model]"}, ("fluid",)),
+    "misspelt key": ({"timestep": "time_step"}, ("lattice.time_step", "'timestep'")),
+    "misspelt kind": ({'"square"': '"squared"'}, ("lattice.kind", "'square'")),
+    "no time": ({"timestep = 0.5": "timestep = 0"}, ("lattice.timestep = 0", "above 0")),
+    "three axes": ({"[12, 10]": "[12, 10, 4]"}, ("box.size", "two numbers", "square")),
+    "one axis": ({"[12, 10]": "[12]"}, ("box.size", "two numbers")),
+    "a chain in a plane": ({'"square"': '"chain"'}, ("box.size", "one number", "chain")),
+    "parts of a site": ({"[12, 10]": "[12.5, 10]"}, ("box.size", "whole numbers")),
+    "one row": ({"[12, 10]": "[12, 1]"}, ("box.size", "at least 2")),
+    "odd rows": ({"[12, 10]": "[12, 9]", '"square"': '"triangular"'}, ("box.size", "even", "y")),
+    "odd bricks": ({"[12, 10]": "[11, 10]", '"square"': '"honeycomb"'}, ("box.size", "even", "x")),
+    "no such axis": ({"timestep": 'ends = ["z"]\ntimestep'}, ("lattice.ends", "x")),
+    "sheared": ({"[12, 10]": "[12, 10]\nshear_rate = 1"}, ("box.shear_rate",)),
+    "misspelt model": ({'"ising"': '"izing"'}, ("lattice.model.rule", "'ising'")),
+    "key of another model": ({"kT = 2.0": "flux = 2.0"}, ("lattice.model.flux", "unknown")),
+    "cold": ({"kT = 2.0": "kT = -1"}, ("lattice.model.kT = -1",)),
+    "misspelt dynamics": ({"kT = 2.0": 'dynamics = "heat"'}, ("lattice.model.dynamics",)),
+    "nothing is tried": ({"kT = 2.0": "attempt_rate = 0"}, ("attempt_rate = 0", "above 0")),
+    "misspelt start": ({RANDOM: '{ rule = "randm" }'}, ("lattice.start.rule", "'random'")),
+    "no such state": ({RANDOM: '{ rule = "uniform", state = "left" }'}, ("lattice.start.state", "'up'")),
+    "parts that are too much": ({RANDOM: '{ rule = "random", fractions = [0.5, 0.6] }'},
+                                ("lattice.start", "sum 1")),
+    "parts of too many": ({RANDOM: '{ rule = "random", fractions = [0.5, 0.25, 0.25] }'},
+                          ("lattice.start.fractions", "2 numbers")),
+    "a slab across z": ({RANDOM: '{ rule = "slab", axis = "z" }'}, ("lattice.start.axis", "2D")),
+    "a droplet of nothing": ({RANDOM: '{ rule = "droplet", radius = 0 }'}, ("radius = 0",)),
+    "no file": ({RANDOM: '{ rule = "file", file = "none.npy" }'}, ("lattice.start.file",)),
+    "no run": ({RANDOM: '{ rule = "run", run = "none" }'}, ("lattice.start.run",)),
+    "turns on a triangle": ({RANDOM: '{ rule = "alternating" }', '"square"': '"triangular"'},
+                            ("'alternating'",)),
+    "odd turns": ({RANDOM: '{ rule = "alternating" }', "[12, 10]": "[11, 10]"}, ("even", "x")),
+    "velocities": ({"[[observe]]": '[trajectory]\nevery = 1\nfields = ["velocity"]\n[[observe]]'},
+                   ("trajectory.fields", "'site'")),
+    "heights of spins": ({'"magnetisation"': '"roughness"'}, ("observe[#1]", "no heights")),
+    "an observable of fluids": ({'"magnetisation"': '"flow-rate"'},
+                                ("observe[#1].quantity", "does not offer it")),
+    "spins of a gas": ({'rule = "ising"\nkT = 2.0': 'rule = "exclusion"'}, ("observe[#1]", "spins")),
+    "units": ({"[[observe]]": '[units]\nlength = "1 nm"\n[[observe]]'}, ("units",)),
+    "a column that is not": ({"[[observe]]": '[log]\nevery = 1\ncolumns = ["left"]\n[[observe]]'},
+                             ("log.columns", "'up'")),
+}  # fmt: skip
+BAD_GAS: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
+    "unknown species": ({"empty -> A": "empty -> B"}, ("process[#1].site", "'A'")),
+    "no arrow": ({'site = "A -> empty"': 'site = "A"'}, ("process[#2].site", "before -> after")),
+    "one name twice": ({'"hop"': '"on"'}, ("process[#2].name", "of its own")),
+    "one species": ({'["empty", "A"]': '["A", "A"]'}, ("species", "different")),
+    "nothing happens": ({"rate = 1.0": "rate = 0.0"}, ("lattice.model", "all rates are 0")),
+    "negative": ({"rate = 1.0": "rate = -1.0"}, ("rate = -1",)),
+    "a turn that is none": ({'site = "A -> empty"\nneighbour = "empty -> A"': 'site = "A -> A"'},
+                            ("process[#2].site", "changes nothing")),
+    "outside is filled": ({'neighbour = "empty -> A"': 'neighbour = "outside -> A"'},
+                          ("process[#2].neighbour", "outside")),
+    "bonds to nothing": ({'bonded = ["A"]': ""}, ("process[#2].bond", "bonded")),
+    "bonds to none": ({'bonded = ["A"]': 'bonded = ["B"]'}, ("process[#2].bonded", "'A'")),
+    "energy of a gas": ({"[lattice.model]": '[[observe]]\nquantity = "lattice-energy"\n[lattice.model]'},
+                        ("observe[#1]", "no energy")),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_wrong_cases_are_refused(name, capsys, tmp_path: Path):
+    changes, words = BAD[name]
+    case = tmp_path / "case.toml"
+    case.write_text(changed(GOOD, changes))
+    has_words(refused(capsys, "check", case), words)
+
+
+@pytest.mark.parametrize("name", BAD_GAS)
+def test_wrong_gases_are_refused(name, capsys, tmp_path: Path):
+    changes, words = BAD_GAS[name]
+    case = tmp_path / "case.toml"
+    case.write_text(changed(GAS, changes))
+    has_words(refused(capsys, "check", case), words)
+
+
+@pytest.mark.parametrize("text", [GOOD, GAS])
+def test_the_good_cases_are_good(text, tmp_path: Path):
+    from mesokit import Case
+
+    (tmp_path / "case.toml").write_text(text)
+    assert Case.from_toml(tmp_path / "case.toml").particles == 120
+
+
+@pytest.mark.parametrize(
+    ("states", "words"),
+    [
+        (np.zeros(5, int), "shape"),
+        (np.zeros((4, 4)), "whole numbers"),
+        (np.full((4, 4), 2), "state 2: expected 0 to 1"),
+        ("abc", "whole numbers"),
+    ],
+)
+def test_wrong_arrays_are_refused(states, words):
+    with pytest.raises(CaseError, match=words):
+        Simulation(lattice_case((4, 4), Ising()), states=states)
+
+
+def test_arrays_are_taken_by_number():
+    states = np.arange(24).reshape(6, 4) % 2
+    simulation = Simulation(lattice_case((6, 4), Ising()), states=states)
+    np.testing.assert_array_equal(simulation.engine.sites(), states.ravel())
+    heights = np.arange(24).reshape(6, 4) * 1000 - 500
+    simulation = Simulation(lattice_case((6, 4), RestrictedSolidOnSolid()), states=heights)
+    np.testing.assert_array_equal(simulation.engine.sites(), heights.ravel())
