@@ -75,7 +75,8 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "misspelt dynamics": ({"kT = 2.0": 'dynamics = "heat"'}, ("lattice.model.dynamics",)),
     "nothing is tried": ({"kT = 2.0": "attempt_rate = 0"}, ("attempt_rate = 0", "above 0")),
     "misspelt start": ({RANDOM: '{ rule = "randm" }'}, ("lattice.start.rule", "'random'")),
-    "no such state": ({RANDOM: '{ rule = "uniform", state = "left" }'}, ("lattice.start.state", "'up'")),
+    "no such state": ({RANDOM: '{ rule = "uniform", state = "left" }'},
+                      ("lattice.start.state", "'up'")),
     "parts that are too much": ({RANDOM: '{ rule = "random", fractions = [0.5, 0.6] }'},
                                 ("lattice.start", "sum 1")),
     "parts of too many": ({RANDOM: '{ rule = "random", fractions = [0.5, 0.25, 0.25] }'},
@@ -92,7 +93,8 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "heights of spins": ({'"magnetisation"': '"roughness"'}, ("observe[#1]", "no heights")),
     "an observable of fluids": ({'"magnetisation"': '"flow-rate"'},
                                 ("observe[#1].quantity", "does not offer it")),
-    "spins of a gas": ({'rule = "ising"\nkT = 2.0': 'rule = "exclusion"'}, ("observe[#1]", "spins")),
+    "spins of a gas": ({'rule = "ising"\nkT = 2.0': 'rule = "exclusion"'},
+                       ("observe[#1]", "spins")),
     "units": ({"[[observe]]": '[units]\nlength = "1 nm"\n[[observe]]'}, ("units",)),
     "a column that is not": ({"[[observe]]": '[log]\nevery = 1\ncolumns = ["left"]\n[[observe]]'},
                              ("log.columns", "'up'")),
@@ -110,7 +112,8 @@ BAD_GAS: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
                           ("process[#2].neighbour", "outside")),
     "bonds to nothing": ({'bonded = ["A"]': ""}, ("process[#2].bond", "bonded")),
     "bonds to none": ({'bonded = ["A"]': 'bonded = ["B"]'}, ("process[#2].bonded", "'A'")),
-    "energy of a gas": ({"[lattice.model]": '[[observe]]\nquantity = "lattice-energy"\n[lattice.model]'},
+    "energy of a gas": ({"[lattice.model]":
+                         '[[observe]]\nquantity = "lattice-energy"\n[lattice.model]'},
                         ("observe[#1]", "no energy")),
 }  # fmt: skip
 
