@@ -44,6 +44,7 @@ class Reporter:
         self.quiet, self.seconds = quiet, seconds
         self.total = self.particles = self.first = self.last = 0
         self.phase = self.line = ""  # what is done, and the last line that was said of it
+        self.what = "particle"  # or "site"
         self.fresh = False  # nothing measured yet, or only the compiler
         self.started = self.began = 0.0  # time of the start, and of the first measured step
         self.now = self.next = 0.0  # time of the last update, and of the next word
@@ -52,10 +53,15 @@ class Reporter:
         self.task: Task | None = None
 
     def start(
-        self, total_steps: int, particles: int, phase: str = "running", step: int = 0
+        self,
+        total_steps: int,
+        particles: int,
+        phase: str = "running",
+        step: int = 0,
+        what: str = "particle",
     ) -> None:
-        """A phase of the run begins at `step` of `total_steps`."""
-        self.total, self.particles, self.phase = total_steps, particles, phase
+        """A phase of the run begins at `step` of `total_steps`; `what` there are so many of."""
+        self.total, self.particles, self.phase, self.what = total_steps, particles, phase, what
         self.first = self.last = step
         self.started = self.now = time.monotonic()
         if not self.quiet:
@@ -124,7 +130,7 @@ class Reporter:
 
     def amount(self, steps: int) -> str:
         """How much there is to do."""
-        return f"{steps} steps of {self.particles} particles"
+        return f"{steps} steps of {self.particles} {self.what}s"
 
     def count(self) -> str:
         """How much is done."""
@@ -132,7 +138,7 @@ class Reporter:
 
     def speed(self, rate: float) -> str:
         """So many steps per second, in the units that users compare."""
-        return f"{rate:.4g} steps/s, {rate * self.particles / 1e6:.3g} M particle-steps/s"
+        return f"{rate:.4g} steps/s, {rate * self.particles / 1e6:.3g} M {self.what}-steps/s"
 
     def rate(self) -> float | None:
         """Steps per second over the recent past, None until two moments are known."""

@@ -108,6 +108,8 @@ def sources(
         found_now = [r for r in kept if r.drawing == drawing]
         maps += [(axes_of(r), r) for r in sorted(found_now, key=lambda r: "component" not in r.x)]
     axes, known = view.axes, case.box.axes
+    if len(known) < 2:
+        raise CaseError(f"box.size = {show(list(case.box.size))}: expected two axes of a picture")
     if axes is not None and (len(axes) != 2 or axes[0] == axes[1] or not set(axes) <= set(known)):
         raise CaseError(f"axes = {show(axes)}: expected two of {', '.join(known)}")
     spheres = trajectory is not None and trajectory.diameter is not None

@@ -1,0 +1,70 @@
+"""Runs of kinetic Monte Carlo by the commands: told, logged, made longer, drawn."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesokit import open as opened
+from mesokit.cli import main
+from tests.helpers.refusals import has_words, refused
+
+CASE = """
+[run]
+method = "kinetic-monte-carlo"
+steps = 40
+[box]
+size = {size}
+[lattice]
+kind = "{kind}"
+model = {model}
+[[observe]]
+quantity = "event-rates"
+[log]
+every = 20
+columns = {columns}
+[trajectory]
+every = 20
+fields = ["site"]
+"""
+
+
+def write(folder: Path, size: str, kind: str, model: str, columns: str) -> Path:
+    case = folder / "case.toml"
+    case.write_text(CASE.format(size=size, kind=kind, model=model, columns=columns))
+    return case
+
+
+def command(*arguments: object) -> None:
+    with pytest.raises(SystemExit) as end:
+        main([str(one) for one in arguments])
+    assert end.value.code == 0
+
+
+def test_a_run_tells_of_sites_and_goes_on_and_is_drawn(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    case = write(tmp_path, "[20, 12]", "square", '{ rule = "ising" }', '["up", "events"]')
+    command("run", case)
+    told = capsys.readouterr()
+    assert "40 steps of 240 sites" in told.err
+    assert "particles" not in told.err + told.out
+    whole = opened("case")
+    frames = [np.array(frame["site"]) for frame in whole.trajectory]
+    assert [frame.shape for frame in frames] == [(240,)] * 3
+    command("run", case, "--set", "run.steps=20", "--output", "short", "--quiet")
+    command("resume", "short", "--steps", "40", "--quiet")
+    longer = opened("short")
+    for frame, other in zip(frames, longer.trajectory, strict=True):
+        np.testing.assert_array_equal(frame, other["site"])
+    command("plot", "case", "--kind", "sites")
+    assert (tmp_path / "case" / "flow-sites.png").exists()
+
+
+def test_heights_are_kept_and_a_chain_has_no_map(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    case = write(tmp_path, "[64]", "chain", '{ rule = "family" }', '["height", "width"]')
+    command("run", case, "--quiet")
+    last = np.array(opened("case").trajectory[-1]["site"])
+    assert last.mean() == pytest.approx(40, rel=0.1)
+    capsys.readouterr()
+    has_words(refused(capsys, "plot", "case", "--kind", "sites"), ("box.size = [64]", "two axes"))
