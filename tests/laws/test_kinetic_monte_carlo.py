@@ -9,6 +9,7 @@ from mesokit.method.kinetic_monte_carlo.engine.events import NEXT, events
 from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
+from mesokit.method.kinetic_monte_carlo.model.potts import Potts
 from mesokit.method.kinetic_monte_carlo.model.random_deposition import RandomDeposition
 from mesokit.method.kinetic_monte_carlo.model.rsos import RestrictedSolidOnSolid
 from mesokit.method.kinetic_monte_carlo.model.single_step import SingleStep
@@ -17,6 +18,7 @@ from mesokit.method.kinetic_monte_carlo.observe.coverage import Coverage
 from mesokit.method.kinetic_monte_carlo.observe.event_rates import EventRates
 from mesokit.method.kinetic_monte_carlo.observe.lattice_energy import LatticeEnergy
 from mesokit.method.kinetic_monte_carlo.observe.magnetisation import Magnetisation
+from mesokit.method.kinetic_monte_carlo.observe.site_profile import SiteProfile
 from mesokit.method.kinetic_monte_carlo.start import AlternatingStart, RandomStart, UniformStart
 from tests.helpers.lattices import lattice_case, lattice_engine
 
@@ -123,6 +125,42 @@ def test_many_spins_have_the_energy_of_onsager():
     assert near([energy]) == {"mean energy"}
     assert energy.expected == pytest.approx(-0.81731, abs=1e-5)
     assert energy.measured == pytest.approx(energy.expected, rel=0.005)
+
+
+def test_three_states_of_few_sites_are_in_equilibrium():
+    """Against a sum over all states of 3 x 3 sites with periodic bonds."""
+    kT, sites = 0.9, np.arange(9).reshape(3, 3)
+    states = (np.arange(3**9)[:, None] // 3 ** np.arange(9)) % 3
+    alike = sum(
+        (states == states[:, np.roll(sites, 1, axis).ravel()]).sum(axis=1) for axis in (0, 1)
+    )
+    weight = np.exp(alike / kT)
+    expected = -(weight @ alike) / weight.sum() / 9
+    case = lattice_case(
+        (3, 3), Potts(q=3, kT=kT), steps=30_000, timestep=4.0, observe=[LatticeEnergy(every=1)]
+    )
+    energy = results_of(case)["lattice-energy"].comparisons[0]
+    assert abs(energy.measured - expected) < 4 * energy.error
+    assert energy.measured == pytest.approx(expected, rel=0.01)
+
+
+def test_two_states_are_spins_with_half_the_coupling():
+    observe = [LatticeEnergy(every=2)]
+    case = lattice_case((64, 64), Potts(q=2, kT=1.5), steps=600, warmup=60, observe=observe)
+    energy = results_of(case)["lattice-energy"].comparisons[0]
+    assert near([energy]) == {"mean energy"}
+    assert energy.expected == pytest.approx(theory.onsager_energy(0.5, 1.5) - 1.0)
+
+
+def test_a_long_chain_is_full_as_its_ends_have_it():
+    """Where particles enter slowly the chain has their density (low-density phase)."""
+    model, observe = Exclusion(enter=0.2, leave=1.0), [SiteProfile(every=5)]
+    case = lattice_case(
+        (200,), model, "chain", steps=20_000, warmup=2000, ends=["x"], observe=observe
+    )
+    profile = results_of(case)["site-profile"]
+    part, error = profile.value[20:120, 1].mean(), profile.error[20:120, 1].mean()
+    assert part == pytest.approx(0.2, abs=0.01) and error < 0.02
 
 
 def test_a_chain_that_is_quenched_loses_walls_as_glauber_has_it():

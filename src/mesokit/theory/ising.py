@@ -45,6 +45,24 @@ def yang_magnetisation(coupling: float, kT: float) -> float:
     return (1.0 - ordered**-4) ** 0.125 if ordered > 1 else 0.0
 
 
+def potts_critical_energy(coupling: float, states: int) -> tuple[float, float]:
+    """Temperature at which an infinite square lattice of Potts spins orders, and its energy there.
+
+    Parameters: `coupling` J of alike neighbours, above 0; `states` q of a spin, 2 to 4, where the
+    energy is continuous. kT = J / ln(1 + sqrt(q)), by duality, and the energy of a site -J (1 +
+    1/sqrt(q)). Raises ValueError for another number of states. Source: R. B. Potts, Math. Proc.
+    Camb. Phil. Soc. 48, 106 (1952); F. Y. Wu, Rev. Mod. Phys. 54, 235 (1982).
+
+    >>> [round(number, 5) for number in potts_critical_energy(1.0, 3)]
+    [0.99497, -1.57735]
+    """
+    positive(coupling=coupling)
+    if states not in (2, 3, 4):
+        raise ValueError(f"states = {states!r}: expected 2, 3 or 4")
+    root = math.sqrt(states)
+    return coupling / math.log(1.0 + root), -coupling * (1.0 + 1.0 / root)
+
+
 def chain_energy(coupling: float, kT: float, spins: int) -> float:
     """Energy of a spin in a ring of spins without a field.
 

@@ -16,6 +16,7 @@ from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
 from mesokit.method.kinetic_monte_carlo.model.family import Family
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import LatticeGas
+from mesokit.method.kinetic_monte_carlo.model.potts import Potts
 from mesokit.method.kinetic_monte_carlo.model.random_deposition import RandomDeposition
 from mesokit.method.kinetic_monte_carlo.model.rsos import RestrictedSolidOnSolid
 from mesokit.method.kinetic_monte_carlo.model.single_step import SingleStep
@@ -24,6 +25,7 @@ from mesokit.method.kinetic_monte_carlo.start import UniformStart, sites_of
 Known = tuple[float, str]  # a number and a note on its theory
 UNKNOWN: Known = (math.nan, "")
 FEW = 16  # spins, of which all states are counted
+CRITICAL = 1e-4  # relative distance from the critical temperature that is none
 
 
 def ising(case: Case, name: str) -> Known:
@@ -43,6 +45,23 @@ def ising(case: Case, name: str) -> Known:
         ordered = theory.yang_magnetisation(model.coupling, model.kT)
         if name in ("size", "square") and ordered > 0:
             return (ordered if name == "size" else ordered**2), f"approximate: {note}"
+    return UNKNOWN
+
+
+def energy(case: Case) -> Known:
+    """Mean energy of a site."""
+    model = case.lattice.model
+    if not isinstance(model, Potts):
+        return ising(case, "energy")
+    plain = not case.lattice.ends and model.coupling > 0 and model.kT > 0
+    if not plain or case.lattice.kind != "square":
+        return UNKNOWN
+    critical, there = theory.potts_critical_energy(model.coupling, model.q)
+    if model.q == 2:  # spins with half the coupling
+        known = theory.onsager_energy(0.5 * model.coupling, model.kT) - model.coupling
+        return known, "an infinite lattice (Onsager 1944)"
+    if abs(model.kT / critical - 1) < CRITICAL:
+        return there, "approximate: an infinite lattice at its critical temperature"
     return UNKNOWN
 
 

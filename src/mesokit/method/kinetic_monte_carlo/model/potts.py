@@ -1,0 +1,53 @@
+"""The Potts model: spins with several directions, of which those that are alike attract."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.kinetic_monte_carlo.model.ising import acceptance
+from mesokit.method.kinetic_monte_carlo.model.protocol import Energies
+from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
+
+
+@component
+class Potts(TableModel):
+    """Sites in one of q states, with the energy -J for each pair of neighbours in the same.
+
+    A site turns to each of the others with the rate attempt_rate/(q - 1) times that of Metropolis
+    or Glauber (see `Ising`). Source: R. B. Potts, Math. Proc. Camb. Phil. Soc. 48, 106 (1952).
+    """
+
+    rule: Literal["potts"] = tag("potts")
+    q: int = param(3, doc="states of a site", symbol="q", ge=2, le=4)
+    coupling: float = param(1.0, doc="energy gained by alike neighbours", symbol="J", unit="energy")
+    kT: float = param(1.0, doc="thermal energy; 0: nothing raises the energy", unit="energy", ge=0)
+    dynamics: Literal["metropolis", "glauber"] = param("metropolis", doc="rate of a turn")
+    attempt_rate: float = param(1.0, doc="largest rate of turns", unit="1/time", gt=0)
+
+    def states(self) -> tuple[str, ...]:
+        return tuple(f"state {k}" for k in range(self.q))
+
+    def processes(self) -> list[Process]:
+        """Turns from each state to each other."""
+        return [
+            Process(f"{one} to {other}", (one, other), self._rate(one, other), ((one,), (other,)))
+            for one in range(self.q)
+            for other in range(self.q)
+            if one != other
+        ]
+
+    def _rate(self, one: int, other: int) -> Callable[[Counts], float]:
+        often = self.attempt_rate / (self.q - 1)
+
+        def rate(counts: Counts) -> float:
+            change = self.coupling * (counts[one] - counts[other])
+            return often * acceptance(self.dynamics, change, self.kT)
+
+        return rate
+
+    def energies(self) -> Energies:
+        return Energies(np.zeros(self.q), -self.coupling * np.eye(self.q))
