@@ -18,8 +18,7 @@ def check(case: Case) -> None:
     """Raise CaseError, with the key first."""
     for message in _box(case):
         raise CaseError(message)
-    if not hasattr(case.lattice.model, "processes"):
-        return
+    case.lattice.model.check(case)
     table = case.lattice.model.kernel(case.lattice.lattice, bool(case.lattice.ends))
     if not table.rates.max(initial=0.0) > 0:
         raise CaseError("lattice.model: all rates are 0; expected something that may happen")

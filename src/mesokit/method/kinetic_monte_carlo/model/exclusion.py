@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from mesokit.case.component import component, param, tag
+from mesokit.case.case import Case
+from mesokit.case.component import component, param, show, tag
+from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.model.table import Process, TableModel
 
 EMPTY, FULL, OUTSIDE = 0, 1, 2
@@ -34,6 +36,19 @@ class Exclusion(TableModel):
     leave_first: float = param(
         0.0, doc="rate at which particles leave the first site", unit="1/time", ge=0
     )
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for another lattice than a chain, and for ends of a ring."""
+        if case.lattice.kind != "chain":
+            raise CaseError(
+                f"lattice.kind = {show(case.lattice.kind)}: expected 'chain' for model 'exclusion'"
+            )
+        for key in ("enter", "leave", "enter_last", "leave_first"):
+            if getattr(self, key) and not case.lattice.ends:
+                raise CaseError(
+                    f"lattice.model.{key} = {show(getattr(self, key))}: only where the lattice "
+                    'ends; give lattice.ends = ["x"]'
+                )
 
     def states(self) -> tuple[str, ...]:
         return "empty", "particle"

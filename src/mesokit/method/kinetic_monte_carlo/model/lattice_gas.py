@@ -9,8 +9,10 @@ from typing import Literal
 
 from pydantic import model_validator
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, one_of, param, show, tag
 from mesokit.case.describe.hints import Many
+from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
 
 OUTSIDE = "outside"  # the name of what is beyond the end of a lattice
@@ -92,6 +94,15 @@ class LatticeGas(TableModel):
                 f"{key} = {show(text)}: expected 'before -> after', of {one_of(known)}"
             )
         return parts[0], parts[1]
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for what happens at ends that there are not."""
+        for k, one in enumerate(self.process):
+            if one.neighbour is not None and OUTSIDE in one.neighbour and not case.lattice.ends:
+                raise CaseError(
+                    f"lattice.model.process[#{k + 1}].neighbour = {show(one.neighbour)}: only "
+                    "where the lattice ends; give lattice.ends"
+                )
 
     def states(self) -> tuple[str, ...]:
         return self.species

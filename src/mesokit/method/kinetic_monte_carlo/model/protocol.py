@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.case import Case
 from mesokit.case.component import component
 from mesokit.case.registry import family
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
@@ -40,6 +41,9 @@ class Model(ABC):
     @abstractmethod
     def events(self) -> Sequence[str]:
         """Names of what may happen, by the number that `process_of` gives."""
+
+    def check(self, case: Case) -> None:  # noqa: B027  # most fit any lattice
+        """Raise CaseError for a case in which the model has no meaning."""
 
     def energies(self) -> Energies | None:
         """Energies of sites and of pairs of neighbours; None where there is no energy."""

@@ -3,7 +3,9 @@
 from collections.abc import Callable
 from typing import Literal
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
+from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.model.heights import (
     HIGHER,
@@ -12,6 +14,7 @@ from mesokit.method.kinetic_monte_carlo.model.heights import (
     HeightModel,
 )
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
+from mesokit.method.kinetic_monte_carlo.start import UniformStart
 
 
 @component
@@ -25,6 +28,14 @@ class SingleStep(HeightModel):
     rule: Literal["single-step"] = tag("single-step")
     up: float = param(1.0, doc="rate at which a valley rises", symbol="p", unit="1/time", ge=0)
     down: float = param(0.0, doc="rate at which a top falls", symbol="q", unit="1/time", ge=0)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for a start in which neighbours do not differ by one."""
+        if isinstance(case.lattice.first(), UniformStart):
+            raise CaseError(
+                "lattice.start: neighbours must differ by one in model 'single-step'; expected "
+                "'alternating', 'file' or 'run'"
+            )
 
     def growth(self, kind: Kind) -> list[Growth]:
         """Valleys and tops."""

@@ -1,10 +1,14 @@
 """Solid on solid: atoms that come down, hop over the surface, and leave it."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from typing import Literal
 
-from mesokit.case.component import component, param, tag
+from pydantic import model_validator
+
+from mesokit.case.component import component, param, show, tag
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.model.heights import (
     AT_LEAST_AS_HIGH,
@@ -37,6 +41,14 @@ class SolidOnSolid(HeightModel):
         False, doc="true: atoms leave the surface, at the rate of their hops, instead of hopping"
     )
     kT: float = param(1.0, doc="thermal energy", unit="energy", gt=0)
+
+    @model_validator(mode="after")
+    def _barrier_of_hops(self) -> SolidOnSolid:
+        if self.evaporate and self.step_barrier:
+            raise ValueError(
+                f"step_barrier = {show(self.step_barrier)}: only of hops, not with evaporate"
+            )
+        return self
 
     def growth(self, kind: Kind) -> list[Growth]:
         """Deposition, hops and evaporation."""
