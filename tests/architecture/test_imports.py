@@ -74,7 +74,8 @@ ROWS = {
     ),
     "method/kinetic_monte_carlo/": (
         "case", "errors", "io", "kernels.kernel", "kernels.later", "kernels.packing",
-        "method.kinetic_monte_carlo", "observe", "scalar", "seam", "statistics", "theory",
+        "method.kinetic_monte_carlo", "observe", "processes.signals", "scalar", "seam",
+        "statistics", "theory",
     ),
     "method/brownian/": (
         "case", "errors", "method.brownian", "observe", "processes.cores", "scalar", "seam",

@@ -106,6 +106,9 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "barrier of what leaves": ({'rule = "ising"\nkT = 2.0':
                                 'rule = "solid-on-solid"\nevaporate = true\nstep_barrier = 1.0'},
                                ("lattice.model", "step_barrier = 1")),
+    "a surface that rests": ({'rule = "ising"\nkT = 2.0': 'rule = "single-step"\nup = 0',
+                              RANDOM: '{ rule = "alternating" }'},
+                             ("lattice.model", "all rates are 0")),
     "units": ({"[[observe]]": '[units]\nlength = "1 nm"\n[[observe]]'}, ("units",)),
     "a column that is not": ({"[[observe]]": '[log]\nevery = 1\ncolumns = ["left"]\n[[observe]]'},
                              ("log.columns", "'up'")),

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mesokit.method.kinetic_monte_carlo.engine import engine as engine_module
 from mesokit.method.kinetic_monte_carlo.engine.classes import IDLE
 from mesokit.method.kinetic_monte_carlo.lattice.grid import by_number, grid_of, neighbour
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
@@ -14,6 +15,7 @@ from mesokit.method.kinetic_monte_carlo.model.family import Family
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
 from mesokit.method.kinetic_monte_carlo.model.solid_on_solid import SolidOnSolid
+from mesokit.seam.engine import Interrupted
 from tests.helpers.lattices import lattice_engine
 
 GAS = LatticeGas(
@@ -137,6 +139,23 @@ def fast_gas():
             GasProcess(name="off", site="A -> empty", rate=1000.0),
         ]
     )
+
+
+def test_a_signal_ends_a_long_step_which_then_goes_on_to_the_same_bits(monkeypatch):
+    whole = lattice_engine((64, 64), fast_gas(), timestep=2.0)
+    whole.advance(2)
+    cut = lattice_engine((64, 64), fast_gas(), timestep=2.0)
+    monkeypatch.setattr(engine_module, "heard", lambda: True)
+    with pytest.raises(Interrupted):
+        cut.advance(2)
+    assert cut.step == 0 and 0 < cut.happened().sum() < whole.happened().sum()
+    monkeypatch.setattr(engine_module, "heard", lambda: False)
+    state = {name: array.copy() for name, array in cut.state().items()}
+    cut = lattice_engine((64, 64), fast_gas(), timestep=2.0)
+    cut.restore(state)
+    cut.advance(2)
+    for name, array in whole.state().items():
+        np.testing.assert_array_equal(array, cut.state()[name])
 
 
 def test_particles_are_kept_by_hops():

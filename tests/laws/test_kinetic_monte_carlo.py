@@ -18,6 +18,7 @@ from mesokit.method.kinetic_monte_carlo.observe.coverage import Coverage
 from mesokit.method.kinetic_monte_carlo.observe.event_rates import EventRates
 from mesokit.method.kinetic_monte_carlo.observe.lattice_energy import LatticeEnergy
 from mesokit.method.kinetic_monte_carlo.observe.magnetisation import Magnetisation
+from mesokit.method.kinetic_monte_carlo.observe.roughness import Roughness
 from mesokit.method.kinetic_monte_carlo.observe.site_profile import SiteProfile
 from mesokit.method.kinetic_monte_carlo.start import AlternatingStart, RandomStart, UniformStart
 from tests.helpers.lattices import lattice_case, lattice_engine
@@ -54,7 +55,7 @@ def test_waiting_times_are_exponential_with_the_rate_of_all_events():
     engine = lattice_engine((8, 8), RandomDeposition(flux=0.25))
     times = [engine.course.clock[NEXT]]
     for _ in range(5000):
-        events(*engine._arguments(), np.nextafter(times[-1], np.inf))  # the next event alone
+        events(*engine._arguments(), np.inf, 1)  # the next event alone
         times.append(engine.course.clock[NEXT])
     assert engine.sites().sum() == 5000
     assert stats.kstest(np.diff(times) * 0.25 * 64, "expon").pvalue > UNLIKELY
@@ -223,6 +224,28 @@ def test_columns_that_grow_alone_have_the_width_of_chance():
         square = engine.sites().var()
         expected = 2.0 * time * (1 - 1 / engine.n)
         assert abs(square - expected) < 4 * expected * np.sqrt(2 / engine.n) + 4 / engine.n
+
+
+def test_a_rough_start_has_no_exponent_and_grows_on_from_there():
+    case = lattice_case(
+        (1600,), RandomDeposition(), "chain", steps=100, observe=[Roughness(every=2)]
+    )
+    rough = np.random.default_rng(1).integers(-20, 21, 1600)
+    simulation = Simulation(case, states=rough)
+    simulation.run()
+    known = {one.what: one for one in simulation["roughness"].comparisons}
+    assert np.isnan(known["growth exponent"].expected)
+    last = known["last mean square width"]
+    assert last.expected == pytest.approx(rough.var() + 100, rel=0.01)
+    assert abs(last.measured - last.expected) < 5 * last.error
+
+
+def test_an_empty_chain_that_nothing_crosses_has_no_current():
+    model, observe = Exclusion(forward=0.0, enter=1.0, leave=1.0), [EventRates(every=5)]
+    case = lattice_case((6,), model, "chain", steps=50, ends=["x"], observe=observe)
+    found = results_of(case)["event-rates"].comparisons
+    assert [one.what for one in found] == ["rate of enter", "rate of leave"]
+    assert np.isnan([one.expected for one in found]).all()
 
 
 def test_a_ring_of_single_steps_has_the_exact_width():

@@ -50,7 +50,7 @@ class Folder:
     # --- while it goes on -----------------------------------------------------------------------
 
     def record(self, engine: Any) -> None:
-        """Keep a frame of the particles, if the case has frames."""
+        """Keep a frame, if the case has frames."""
         if self.writer is not None:
             self.writer.record(engine)
 

@@ -85,7 +85,7 @@ class Replicas:
                 raise RunError(f"replica of seed {one.case.run.seed}: {error}") from None
 
     def start(self, arrays: Mapping[str, Any]) -> None:
-        """Place the particles of each replica in its first state."""
+        """Put each replica in its first state."""
         for one in self.all:
             method = method_of(one.case)
             method.initial.fill(one.engine, method.initial.read(one.case, arrays))

@@ -45,7 +45,7 @@ class Accumulator(Protocol):
 )
 @component
 class Observable(ABC):  # noqa: B024  # `accumulator` is abstract
-    """Something measured while the fluid runs."""
+    """Something measured during a run."""
 
     methods: ClassVar[tuple[str, ...]] = ()  # it is for, beside those that offer it
     of_methods_alone: ClassVar[bool] = False  # whether it is for no others

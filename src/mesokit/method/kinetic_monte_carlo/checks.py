@@ -51,4 +51,7 @@ def _box(case: Case) -> Iterator[str]:
                 f"lattice.kind = {show(given.kind)}"
             )
     if sites_of(case) > MOST_SITES:
-        yield f"box.size = {show(list(size))}: {count_text(sites_of(case))} sites; expected fewer"
+        yield (
+            f"box.size = {show(list(size))}: {count_text(sites_of(case))} sites; expected at most "
+            f"{MOST_SITES}"
+        )

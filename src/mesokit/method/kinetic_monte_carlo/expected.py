@@ -20,7 +20,7 @@ from mesokit.method.kinetic_monte_carlo.model.potts import Potts
 from mesokit.method.kinetic_monte_carlo.model.random_deposition import RandomDeposition
 from mesokit.method.kinetic_monte_carlo.model.rsos import RestrictedSolidOnSolid
 from mesokit.method.kinetic_monte_carlo.model.single_step import SingleStep
-from mesokit.method.kinetic_monte_carlo.start import UniformStart, sites_of
+from mesokit.method.kinetic_monte_carlo.start import sites_of
 
 Known = tuple[float, str]  # a number and a note on its theory
 UNKNOWN: Known = (math.nan, "")
@@ -123,7 +123,7 @@ def event_rates(case: Case) -> dict[str, Known]:
             there = z * (1 - before) if one.neighbour is not None else 1.0
             found[one.name] = rate * before * there, "Langmuir"
         return found
-    if not isinstance(model, Exclusion) or case.lattice.kind != "chain" or model.backward:
+    if not isinstance(model, Exclusion) or model.backward or not model.forward:
         return {}
     sites = sites_of(case)
     if case.lattice.ends and not (model.enter_last or model.leave_first):
@@ -139,13 +139,12 @@ def event_rates(case: Case) -> dict[str, Known]:
     return {}
 
 
-def width(case: Case, time: NDArray) -> tuple[NDArray | None, str]:
-    """Width of a surface at times, None without theory."""
+def width(case: Case, time: NDArray, first: float) -> tuple[NDArray | None, str]:
+    """Width of a surface at times, None without theory; `first` is its square at the first."""
     model = case.lattice.model
-    flat = isinstance(case.lattice.first(), UniformStart)
-    if isinstance(model, RandomDeposition) and flat:
-        share = 1 - 1 / sites_of(case)
-        return np.sqrt(model.flux * time * share), "independent columns, exact"
+    if isinstance(model, RandomDeposition) and len(time):
+        grown = model.flux * (time - time[0]) * (1 - 1 / sites_of(case))
+        return np.sqrt(first + grown), "independent columns, exact"
     return None, ""
 
 

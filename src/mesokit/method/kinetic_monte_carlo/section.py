@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from mesokit.case.box import Axis
+from pydantic import field_validator
+
+from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS, Kind
@@ -35,6 +37,11 @@ class Lattice:
         if self.start is not None:
             return self.start
         return RandomStart() if self.model.states() else UniformStart()
+
+    @field_validator("ends")
+    @classmethod
+    def _each_axis_once(cls, axes: tuple[Axis, ...]) -> tuple[Axis, ...]:
+        return tuple(axis for axis in AXES if axis in axes)
 
     @property
     def lattice(self) -> Kind:

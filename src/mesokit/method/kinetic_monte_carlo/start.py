@@ -165,7 +165,7 @@ class RunStart(LatticeStart):
     """States from the last checkpoint of an earlier run, with the clock at 0."""
 
     rule: Literal["run"] = tag("run")
-    run: FileName = param(doc="folder of the run")
+    run: FileName = param(doc="folder of the run; of replicas, the first")
 
     def states(self, case: Case) -> States:
         key = f"lattice.start.run = {show(self.run, 500)}"

@@ -1,5 +1,6 @@
 """The sites in memory: an engine that does events one after the other, exactly."""
 
+import math
 from collections.abc import Collection
 from time import perf_counter
 from typing import Any
@@ -10,11 +11,21 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.kernels.packing import Packing
 from mesokit.method.kinetic_monte_carlo.engine.classes import classes_of
-from mesokit.method.kinetic_monte_carlo.engine.events import CLOCK, NEXT, Course, begin, events
+from mesokit.method.kinetic_monte_carlo.engine.events import (
+    CLOCK,
+    NEXT,
+    TIME,
+    Course,
+    begin,
+    events,
+)
 from mesokit.method.kinetic_monte_carlo.engine.pairs import count_pairs
 from mesokit.method.kinetic_monte_carlo.lattice.grid import Sites, by_number, grid_of, length_of
 from mesokit.method.kinetic_monte_carlo.start import kind_of
-from mesokit.seam.engine import Integers, State
+from mesokit.processes.signals import heard
+from mesokit.seam.engine import Integers, Interrupted, State
+
+AT_ONCE = 1_000_000  # events, some tenths of a second, after which a signal is looked for
 
 
 class Events:
@@ -39,7 +50,7 @@ class Events:
             np.zeros(shape, np.int64),
         )
         self.seconds, self._packing = {"events": 0.0}, Packing()
-        events.compile_ahead(*self._arguments(), 0.0)
+        events.compile_ahead(*self._arguments(), 0.0, AT_ONCE)
 
     def _arguments(self) -> tuple[Any, ...]:
         return self._packing(self.model, self.lattice, self.classes, self.course)
@@ -57,10 +68,15 @@ class Events:
         begin(*self._arguments())
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
-        """Run some steps: slices of time."""
-        began = perf_counter()
-        self.step += steps
-        events(*self._arguments(), self.time)
+        """Run some steps: slices of time. Raises Interrupted on a signal."""
+        began, goal = perf_counter(), self.step + steps
+        until = goal * self.timestep
+        while not events(*self._arguments(), until, AT_ONCE):
+            if heard():  # some events of the next step may have happened
+                done = math.floor(self.course.clock[TIME] / self.timestep)
+                self.step = max(self.step, min(done, goal - 1))
+                raise Interrupted
+        self.step = goal
         self.seconds["events"] += perf_counter() - began
 
     @property

@@ -108,11 +108,17 @@ def begin(model, sites, classes, course):
 
 
 @kernel
-def events(model, sites, classes, course, until):
-    """All events up to a time. What the next event waits for is not drawn anew: it happens in the
-    next call, at its time, so that the lengths of calls change nothing."""
+def events(model, sites, classes, course, until, most):
+    """The events up to a time, but no more than so many; whether these were all.
+
+    What the next event waits for is not drawn anew: it happens in the next call, at its time, so
+    that the lengths of calls change nothing.
+    """
     clock, none, total = course.clock, sites.grid.neighbours, total_rate(classes)
     while clock[NEXT] < until or (clock[NEXT] == until and clock[NEXT_REST] <= 0.0):
+        if most == 0:
+            return False
+        most -= 1
         a, b, c, _ = words(Counter(course.seed, course.drawn[0]), EVENT, 0, 0)
         course.drawn[0] += np.uint64(1)
         i, left = choose(classes, total, unit(a, b))
@@ -121,3 +127,4 @@ def events(model, sites, classes, course, until):
         _change(model, sites, classes, i, new, j, other)
         total = total_rate(classes)
         _wait(clock, total, c)
+    return True

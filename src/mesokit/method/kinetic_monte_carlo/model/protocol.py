@@ -36,7 +36,10 @@ class Model(ABC):
 
     @abstractmethod
     def kernel(self, kind: Kind, ends: bool) -> Any:
-        """Parameters for the scalar functions below; `ends`: whether neighbours may be missing."""
+        """Parameters for the scalar functions below; `ends`: whether neighbours may be missing.
+
+        Its field `rates` (m,) is the rate of all that may happen at a site, by surroundings.
+        """
 
     @abstractmethod
     def events(self) -> Sequence[str]:

@@ -10,7 +10,6 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.expected import ising
-from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
@@ -20,17 +19,19 @@ from mesokit.statistics import Blocks, TimeSeries
 
 @component
 class Magnetisation(LatticeObservable):
-    """Mean spin m in time; the means of its size and of its square, the susceptibility
-    n (<m^2> - <|m|>^2) / kT and the Binder cumulant 1 - <m^4>/(3 <m^2>^2)."""
+    """Mean spin m of sites with two states, -1 and 1, in time.
+
+    Beside its mean are those of its size and of its square, the susceptibility n (<m^2> - <|m|>^2)
+    / kT and the Binder cumulant 1 - <m^4>/(3 <m^2>^2)."""
 
     quantity: Literal["magnetisation"] = tag("magnetisation")
     drawing, value_label = "path", "mean spin"
     units: ClassVar[dict[str, str]] = {"time": "tau"}
 
     def check(self, case: Case) -> None:
-        """Raise CaseError for a model without spins."""
+        """Raise CaseError for a model whose sites have not two states."""
         super().check(case)
-        if not isinstance(case.lattice.model, Ising):
+        if len(case.lattice.model.states()) != 2:
             raise CaseError(f"model {show(name_of(case.lattice.model))} has no spins; leave it out")
 
 
@@ -63,7 +64,7 @@ class MagnetisationAccumulator(BlockAccumulator):
         ):
             known, note = ising(case, name)
             yield Comparison(what, *means.scalar((mean, size, square)[k], unit[k]), known, "", note)
-        kT = case.lattice.model.kT
+        kT = getattr(case.lattice.model, "kT", 0.0)
         if kT > 0:
             factor = case.particles / kT
             slope = factor * (unit[2] - 2 * size * unit[1])
