@@ -60,6 +60,16 @@ def test_a_run_tells_of_sites_and_goes_on_and_is_drawn(tmp_path, monkeypatch, ca
     assert (tmp_path / "case" / "flow-sites.png").exists()
 
 
+def test_check_says_that_equilibrium_takes_time(tmp_path, capsys):
+    case = write(tmp_path, "[20, 12]", "square", '{ rule = "ising" }', '["up"]')
+    case.write_text(case.read_text().replace('"event-rates"', '"magnetisation"'))
+    command("check", case)
+    told = capsys.readouterr().out
+    assert "warning: run.warmup = 0: equilibrium takes time, and means of magnetisation" in told
+    command("check", case, "--set", "run.warmup=10")
+    assert "equilibrium takes time" not in capsys.readouterr().out
+
+
 def test_heights_are_kept_and_a_chain_has_no_map(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     case = write(tmp_path, "[64]", "chain", '{ rule = "family" }', '["height", "width"]')

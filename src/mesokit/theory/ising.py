@@ -127,7 +127,7 @@ def counted_spins(
     return {
         "energy": float(weight @ e),
         "square energy": float(weight @ e**2),
-        "mean": float(weight @ m),
+        "mean": float(weight @ m) if field else 0.0,  # by symmetry, without rounding
         "size": float(weight @ abs(m)),
         "square": float(weight @ m**2),
         "fourth": float(weight @ m**4),

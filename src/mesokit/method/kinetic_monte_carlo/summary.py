@@ -13,11 +13,12 @@ from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.method.kinetic_monte_carlo.engine.classes import FAN
 from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE
-from mesokit.method.kinetic_monte_carlo.start import sites_of
+from mesokit.method.kinetic_monte_carlo.start import RunStart, sites_of
 from mesokit.seam.method import Row, Summary
 
 SECONDS = 0.2e-6  # of a thread for an event, where the project measures (docs/benchmark.md)
 LONGEST = 1e10  # seconds: longer ones are not told apart
+EQUILIBRIUM = ("lattice-energy", "magnetisation")  # what theory expects in it alone
 BYTES = 4  # of memory for each site: its state, its surroundings and its class
 
 
@@ -60,4 +61,10 @@ def _warnings(case: Case, fastest: float) -> Iterator[str]:
         yield (
             f"lattice.timestep: at most {per_slice:.2g} events in a step on average; "
             "a longer timestep costs less"
+        )
+    waits = [one.label for one in case.observe if name_of(one) in EQUILIBRIUM]
+    if case.run.warmup == 0 and waits and not isinstance(case.lattice.first(), RunStart):
+        yield (
+            f"run.warmup = 0: equilibrium takes time, and means of {waits[0]} count from the first "
+            "step"
         )
