@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component
 from mesokit.method.kinetic_monte_carlo.lattice.grid import neighbour
-from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS, Kind
 from mesokit.method.kinetic_monte_carlo.model.protocol import (
     Model,
     process_of,
     surroundings,
     surroundings_after,
 )
-from mesokit.method.kinetic_monte_carlo.model.table import Process, rates_of
+from mesokit.method.kinetic_monte_carlo.model.table import Process, Rates, rates_of
 from mesokit.scalar.jit import scalar
 
 FAR = 3  # atoms: larger differences of heights are as good as this
@@ -65,32 +65,29 @@ class HeightModel(Model, ABC):
             np.array([one.site for one in found]),
             np.array([one.beside for one in found]),
             np.array([one.stays for one in found]),
-            *rates_of(processes, 1, 2 * FAR + 1, kind, ends),
+            rates_of(processes, 1, 2 * FAR + 1, kind, ends),
         )
 
     def events(self) -> list[str]:
         """Names of the processes."""
-        from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
-
         return [one.process.name for one in self.growth(KINDS["square"])]
 
 
 class Heights(NamedTuple):
     """Processes of growth as kernels take them.
 
-    site, beside, stays: (processes,) of `Growth`. The others are those of `Rates`.
+    site, beside, stays: (processes,) of `Growth`. of: their rates.
     """
 
     site: NDArray[np.int64]
     beside: NDArray[np.int64]
     stays: NDArray[np.int64]
-    begin: NDArray[np.int64]
-    first: NDArray[np.int32]
-    weights: NDArray[np.int32]
-    rates: NDArray[np.float64]
-    shares: NDArray[np.float64]
-    fits: NDArray[np.int64]
-    towards: NDArray[np.int64]
+    of: Rates
+
+    @property
+    def rates(self) -> NDArray[np.float64]:
+        """Rates (m,) of all processes together, by surroundings."""
+        return self.of.rates
 
 
 @scalar
@@ -107,32 +104,32 @@ def _(model, sites, i):
     for direction in range(sites.grid.neighbours):
         j = neighbour(sites.grid, i, direction)
         other = _difference(height, np.int64(sites.states[j])) if j >= 0 else 2 * FAR + 1
-        around += model.weights[direction * (2 * FAR + 2) + other]
+        around += model.of.weights[direction * (2 * FAR + 2) + other]
     return around
 
 
 @surroundings_after.register(Heights)
 def _(model, sites, i, direction, old, new):
     height, row = np.int64(sites.states[i]), direction * (2 * FAR + 2)
-    before = np.int64(model.weights[row + _difference(height, old)])
-    return np.int64(sites.around[i]) + model.weights[row + _difference(height, new)] - before
+    before = np.int64(model.of.weights[row + _difference(height, old)])
+    return np.int64(sites.around[i]) + model.of.weights[row + _difference(height, new)] - before
 
 
 @process_of.register(Heights)
 def _(model, sites, i, u):
     height, around = np.int64(sites.states[i]), np.int64(sites.around[i])
-    left, row = u * model.rates[around], around * len(model.site)
+    left, row = u * model.of.rates[around], around * len(model.site)
     last, chosen, target, rate = 0, -1, -1, 1.0
     for p in range(len(model.site)):
-        share = model.shares[row + p]
-        if share > 0.0 and model.fits[p] == 0:
+        share = model.of.shares[row + p]
+        if share > 0.0 and model.of.fits[p] == 0:
             last, chosen, rate, left = p, -1, share, left - share
         elif share > 0.0:
             for direction in range(sites.grid.neighbours):
                 j = neighbour(sites.grid, i, direction)
                 if j >= 0:
                     there = _difference(height, np.int64(sites.states[j]))
-                    if (model.fits[p] >> there) & 1:
+                    if (model.of.fits[p] >> there) & 1:
                         last, chosen, target, rate, left = p, direction, j, share, left - share
                         if left < 0.0:
                             break

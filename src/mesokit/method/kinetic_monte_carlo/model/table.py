@@ -70,7 +70,7 @@ class TableModel(Model, ABC):
             number,
             np.array([one.site[1] for one in ordered]),
             np.array([-1 if one.neighbour is None else one.neighbour[1] for one in ordered]),
-            *rates_of(ordered, number, number, kind, ends),
+            rates_of(ordered, number, number, kind, ends),
         )
 
     def events(self) -> list[str]:
@@ -82,19 +82,18 @@ class Table(NamedTuple):
     """Processes as kernels take them.
 
     number: states a site may have. new, beside: (processes,) states of the site and of the
-    neighbour after each. The others are those of `Rates`.
+    neighbour after each. of: their rates.
     """
 
     number: int
     new: NDArray[np.int64]
     beside: NDArray[np.int64]
-    begin: NDArray[np.int64]
-    first: NDArray[np.int32]
-    weights: NDArray[np.int32]
-    rates: NDArray[np.float64]
-    shares: NDArray[np.float64]
-    fits: NDArray[np.int64]
-    towards: NDArray[np.int64]
+    of: Rates
+
+    @property
+    def rates(self) -> NDArray[np.float64]:
+        """Rates (m,) of all processes together, by surroundings."""
+        return self.of.rates
 
 
 class Rates(NamedTuple):
@@ -206,11 +205,11 @@ def _counts(
 @surroundings.register(Table)
 def _(model, sites, i):
     state = np.int64(sites.states[i])
-    around = np.int64(model.first[state])
+    around = np.int64(model.of.first[state])
     row, step = state * (model.number + 1), model.number * (model.number + 1)
     for direction in range(sites.grid.neighbours):
         j = neighbour(sites.grid, i, direction)
-        around += model.weights[row + (np.int64(sites.states[j]) if j >= 0 else model.number)]
+        around += model.of.weights[row + (np.int64(sites.states[j]) if j >= 0 else model.number)]
         row += step
     return around
 
@@ -218,7 +217,7 @@ def _(model, sites, i):
 @surroundings_after.register(Table)
 def _(model, sites, i, direction, old, new):
     row = (direction * model.number + np.int64(sites.states[i])) * (model.number + 1)
-    change = np.int64(model.weights[row + new]) - np.int64(model.weights[row + old])
+    change = np.int64(model.of.weights[row + new]) - np.int64(model.of.weights[row + old])
     return np.int64(sites.around[i]) + change
 
 
@@ -226,18 +225,18 @@ def _(model, sites, i, direction, old, new):
 def _(model, sites, i, u):
     # the processes of this state, one neighbour after the other, until their rates make up u of all
     state, around = np.int64(sites.states[i]), np.int64(sites.around[i])
-    left, row = u * model.rates[around], around * len(model.new)
+    left, row = u * model.of.rates[around], around * len(model.new)
     last, chosen, target = 0, -1, -1
-    for p in range(model.begin[state], model.begin[state + 1]):
-        rate = model.shares[row + p]
-        if rate > 0.0 and model.fits[p] == 0:
+    for p in range(model.of.begin[state], model.of.begin[state + 1]):
+        rate = model.of.shares[row + p]
+        if rate > 0.0 and model.of.fits[p] == 0:
             last, chosen, target, left = p, -1, -1, left - rate
         elif rate > 0.0:
             for direction in range(sites.grid.neighbours):
-                if (model.towards[p] >> direction) & 1:
+                if (model.of.towards[p] >> direction) & 1:
                     j = neighbour(sites.grid, i, direction)
                     there = np.int64(sites.states[j]) if j >= 0 else model.number
-                    if (model.fits[p] >> there) & 1:
+                    if (model.of.fits[p] >> there) & 1:
                         last, chosen, target, left = p, direction, j, left - rate
                         if left < 0.0:
                             break
