@@ -56,6 +56,13 @@ def test_a_run_tells_of_sites_and_goes_on_and_is_drawn(tmp_path, monkeypatch, ca
     longer = opened("short")
     for frame, other in zip(frames, longer.trajectory, strict=True):
         np.testing.assert_array_equal(frame, other["site"])
+    start = "--set", 'lattice.start={ rule = "run", run = "short" }'
+    command("run", case, *start, "--output", "on", "--quiet")
+    np.testing.assert_array_equal(opened("on").trajectory[0]["site"], frames[-1])
+    has_words(
+        refused(capsys, "run", case, *start, "--set", "box.size=[20, 14]", "--output", "no"),
+        ("lattice.start.run", "that run has a box of [20, 12]"),
+    )
     command("plot", "case", "--kind", "sites")
     assert (tmp_path / "case" / "flow-sites.png").exists()
 

@@ -14,8 +14,7 @@ from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.contact import MARGIN
 from mesokit.geometry.solids.solids import solids_of
-from mesokit.io import checkpoint
-from mesokit.io.run_directory import RunDirectory
+from mesokit.io.earlier_run import earlier_state
 from mesokit.io.snapshot_file import read_snapshot
 from mesokit.method.flock.engine.step import scatter_headings, scatter_places
 from mesokit.scalar.random import Counter
@@ -152,17 +151,7 @@ def _numbers(case: Case, key: str, given: Any) -> Array:
 
 def _last_of_run(case: Case, path: str) -> tuple[Array, Array]:
     """Places and headings at the last checkpoint of an earlier run with this box and as many."""
-    directory = RunDirectory.existing(path)
-    earlier = Case.from_toml(directory.case_file)
-    if earlier.run.method != case.run.method:
-        raise CaseError(f"that is a run of method {show(earlier.run.method)}")
-    if list(earlier.box.size) != list(case.box.size):
-        raise CaseError(
-            f"that run has a box of {show(list(earlier.box.size))}, this case "
-            f"{show(list(case.box.size))}"
-        )
-    arrays, _ = checkpoint.read(directory.checkpoint_file)
-    state = checkpoint.part(arrays, "engine/")
+    state = earlier_state(case, path)
     return state["places"] + state["images"] * np.array(case.box.size, float), state["headings"]
 
 

@@ -18,8 +18,7 @@ from mesokit.case.given.array_file import EXPECTED, array_in_file
 from mesokit.case.given.file import FileName
 from mesokit.case.registry import family
 from mesokit.errors import CaseError, MesokitError
-from mesokit.io import checkpoint
-from mesokit.io.run_directory import RunDirectory
+from mesokit.io.earlier_run import earlier_state
 
 States = NDArray[np.integer[Any]]
 DRAW = 91  # purpose of the random numbers here: with the seed, the key of the generator
@@ -170,19 +169,10 @@ class RunStart(LatticeStart):
     def states(self, case: Case) -> States:
         key = f"lattice.start.run = {show(self.run, 500)}"
         try:
-            directory = RunDirectory.existing(self.run)
-            earlier = Case.from_toml(directory.case_file)
-            arrays, _ = checkpoint.read(directory.checkpoint_file)
+            state = earlier_state(case, self.run)
         except (OSError, MesokitError) as error:
             raise CaseError(f"{key}: {error}") from None
-        if earlier.run.method != case.run.method:
-            raise CaseError(f"{key}: that is a run of method {show(earlier.run.method)}")
-        if list(earlier.box.size) != list(case.box.size):
-            raise CaseError(
-                f"{key}: that run has a box of {show(list(earlier.box.size))}, this case "
-                f"{show(list(case.box.size))}"
-            )
-        return checked(case, key, checkpoint.part(arrays, "engine/")["states"])
+        return checked(case, key, state["states"])
 
 
 def kind_of(case: Case) -> type[np.integer]:
