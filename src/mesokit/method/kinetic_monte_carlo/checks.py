@@ -8,7 +8,7 @@ from mesokit.case.amounts import count_text
 from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.method.kinetic_monte_carlo.engine.classes import IDLE
+from mesokit.method.kinetic_monte_carlo.engine.classes import MOST as IDLE
 from mesokit.method.kinetic_monte_carlo.start import sites_of
 
 MOST_SITES = 2**40

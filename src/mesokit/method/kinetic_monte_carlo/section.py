@@ -9,6 +9,7 @@ from pydantic import field_validator
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
+from mesokit.method.kinetic_monte_carlo.engine.select import Selection
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS, Kind
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.protocol import Model
@@ -28,6 +29,9 @@ class Lattice:
     ends: Many[Axis] = param((), doc="axes along which the lattice ends (periodic unless said)")
     timestep: float = param(1.0, doc="time of a step of the run", gt=0, le=1e300)
     model: Model = param(Ising(), doc="what may happen at the sites")
+    select: Selection = param(
+        "auto", doc="how the next event is chosen; all ways draw the same law"
+    )
     start: LatticeStart | None = param(
         None, doc="states that the sites start in (random, or heights 0, unless said)"
     )

@@ -1,9 +1,13 @@
 """Choice by classes: sites of one class have one rate (Bortz, Kalos and Lebowitz 1975).
 
-A class is a byte for each site. How many sites of each class there are is known for each tile, for
-16 tiles, for 16 times as many, and so on: all of them integers, which never drift. A class is drawn
-by its total rate, then one of its sites, from the top of that tree down to the tile, whose bytes
-are compared 64 at a time.
+A class is a byte for each site, or each bond. How many of each class there are is known for each
+tile of 256 and for all tiles: integers, which never drift. A class is drawn by its total rate, then
+one of the tiles that have any of it, in proportion to how many it has, then one of these: the bytes
+of the tile are compared 64 at a time. None of these steps takes longer in a larger lattice.
+
+With more than some different rates a class is of all rates within a factor of two (Slepoy,
+Thompson and Plimpton 2008): it counts as if all had the largest of them, and what is drawn happens
+with the probability of its own rate over that one.
 """
 
 from typing import NamedTuple
@@ -11,124 +15,216 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.kinetic_monte_carlo.engine.bytes import bits_set, equal_bytes, lowest_bit
+from mesokit.scalar.bits import bits_set, equal_bytes, high_product, nth_bit
+from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, keeps, put, total_rate
+from mesokit.method.kinetic_monte_carlo.engine.stream import next_word, unit_of
 from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import scalar, seldom
 
-IDLE = 255  # the byte of sites where nothing can happen, and of no site
-FAN = 16  # tiles, or nodes of the tree, below a node
-_ONE = np.uint64(1)
+MOST = 256  # classes, as bytes have values
+U = np.uint64
 
 
 class Classes(NamedTuple):
-    """Sites by class.
+    """What may happen, by class; the last class is of what cannot.
 
-    of: (memory,) class of each site, IDLE if nothing can happen there. by_surroundings: (m,) class
-    of sites with these. rates: (classes,) of each site of a class. numbers: (classes,) of sites.
-    tree: counts of each class in each node, level by level, 16 nodes side by side; levels: where
-    each begins.
+    A part of the lattice is what one thread works on at a time: all of it, or a sector.
+
+    of: (n,) class of each site or bond. by_surroundings: (m,) class of sites with these. chances:
+    (m,) rates over that of the class. rates: (classes,). parts: how many. home: (tiles,) part of
+    each. numbers: (parts, classes) of each class. counts: (tiles, classes). lists: (classes, tiles)
+    tiles that have any of a class, those of each part together. ranks: (tiles, classes) where a
+    tile is in its list. lengths, first: (parts, classes) tiles in a list, and where it begins.
+    highest: (parts, classes) no tile has more. refused: (parts, classes) tiles since that was found
+    that were drawn in vain.
     """
 
     of: NDArray[np.uint8]
     by_surroundings: NDArray[np.uint8]
+    chances: NDArray[np.float64]
     rates: NDArray[np.float64]
+    parts: int
+    home: NDArray[np.int32]
     numbers: NDArray[np.int64]
-    tree: NDArray[np.int32]
-    levels: NDArray[np.int64]
+    counts: NDArray[np.uint16]
+    lists: NDArray[np.int32]
+    ranks: NDArray[np.int32]
+    lengths: NDArray[np.int32]
+    first: NDArray[np.int64]
+    highest: NDArray[np.int32]
+    refused: NDArray[np.int64]
 
 
-def classes_of(rates: NDArray[np.float64], memory: int) -> Classes:
-    """An empty choice, by the rates (m,) of sites by their surroundings, for so many places."""
-    distinct = np.unique(rates[rates > 0])[::-1]  # the fastest first: most events are of these
-    number = max(len(distinct), 1)
-    if number > IDLE:
-        raise ValueError(f"{number} different rates; expected at most {IDLE}")
-    found = len(distinct) - np.searchsorted(distinct[::-1], rates, side="right")
-    levels, nodes = [0], memory // TILE
-    while True:
-        nodes = -(-nodes // FAN)
-        levels.append(levels[-1] + nodes * number * FAN)
-        if nodes == 1:
-            break
+def by_factors_of_two(rates: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rate of the class of each rate: the power of two above it.
+
+    >>> by_factors_of_two(np.array([0.0, 0.3, 0.5, 3.0])).tolist()
+    [0.0, 0.5, 0.5, 4.0]
+    """
+    mantissa, exponent = np.frexp(rates)
+    return np.where(rates > 0, np.ldexp(1.0, exponent - (mantissa == 0.5)), 0.0)
+
+
+def classes_of(
+    rates: NDArray[np.float64], memory: int, home: NDArray[np.int32], grouped: bool
+) -> Classes:
+    """An empty choice, by the rates (m,) of sites by their surroundings, for so many places, with
+    the part of each tile."""
+    bound = by_factors_of_two(rates) if grouped else rates
+    distinct = np.unique(bound[bound > 0])[::-1]  # the fastest first: most events are of these
+    width = len(distinct) + 1
+    if width > MOST:
+        raise ValueError(f"{width} different rates; expected at most {MOST}")
+    tiles, parts = memory // TILE, int(home.max()) + 1
+    begins = np.searchsorted(np.sort(home), np.arange(parts))
+    first = begins[:, None] + tiles * np.arange(width)
+    found = len(distinct) - np.searchsorted(distinct[::-1], bound, side="right")
     return Classes(
-        np.full(memory, IDLE, np.uint8),
-        np.where(rates > 0, found, IDLE).astype(np.uint8),
-        np.append(distinct, np.zeros(number - len(distinct))),
-        np.zeros(number, np.int64),
-        np.zeros(levels[-1], np.int32),
-        np.array(levels[:-1]),
+        np.zeros(memory, np.uint8),
+        np.where(bound > 0, found, width - 1).astype(np.uint8),
+        np.divide(rates, bound, out=np.zeros_like(rates), where=bound > 0),
+        np.append(distinct, 0.0),
+        parts,
+        home,
+        np.zeros(parts * width, np.int64),
+        np.zeros(tiles * width, np.uint16),
+        np.zeros(width * tiles, np.int32),
+        np.zeros(tiles * width, np.int32),
+        np.zeros(parts * width, np.int32),
+        first.astype(np.int64).ravel(),
+        np.ones(parts * width, np.int32),
+        np.zeros(parts * width, np.int64),
     )
 
 
-@scalar
-def put_class(classes, i, new):
-    """Set the class of the site at a place in memory."""
-    old = np.int64(classes.of[i])
-    if new != old:
-        classes.of[i] = new
-        node, width = i >> 8, len(classes.rates)
-        for level in range(len(classes.levels)):
-            base = classes.levels[level] + (((node >> 4) * width) << 4) + (node & 15)
-            if old < width:
-                classes.tree[base + (old << 4)] -= 1
-            if new < width:
-                classes.tree[base + (new << 4)] += 1
-            node >>= 4
-        if old < width:
-            classes.numbers[old] -= 1
-        if new < width:
-            classes.numbers[new] += 1
+def clear(classes: Classes) -> None:
+    """Let nothing be able to happen, at any place of the memory."""
+    width, tiles = len(classes.rates), len(classes.home)
+    idle = width - 1
+    classes.of.fill(idle)
+    for array in (classes.numbers, classes.counts, classes.lengths, classes.refused):
+        array.fill(0)
+    classes.highest.fill(1)
+    members = np.bincount(classes.home, minlength=classes.parts)
+    classes.numbers[idle::width] = TILE * members
+    classes.counts[idle::width] = TILE
+    classes.lengths[idle::width] = members
+    order = np.argsort(classes.home, kind="stable")
+    classes.lists[idle * tiles :] = order
+    classes.ranks[order * width + idle] = np.concatenate([np.arange(m) for m in members])
+
+
+@put.register(Classes)
+def _(choice, part, i, around):
+    old, new = np.int64(choice.of[U(i)]), np.int64(choice.by_surroundings[U(around)])
+    tile = i >> 8
+    if old == new or (choice.parts > 1 and choice.home[U(tile)] != part):
+        return
+    choice.of[U(i)] = new
+    width = len(choice.rates)
+    row, own = tile * width, part * width
+    left = np.int64(choice.counts[U(row + old)]) - 1
+    choice.counts[U(row + old)] = left
+    choice.numbers[U(own + old)] -= 1
+    if left == 0:
+        _leave_list(choice, own, tile, old)
+    there = np.int64(choice.counts[U(row + new)]) + 1
+    choice.counts[U(row + new)] = there
+    choice.numbers[U(own + new)] += 1
+    if there > choice.highest[U(own + new)] or there == 1:
+        if there == 1:
+            _join_list(choice, own, tile, new)
+        choice.highest[U(own + new)] = max(there, np.int64(choice.highest[U(own + new)]))
 
 
 @scalar
-def total_rate(classes):
-    """Rate of all events."""
-    total = 0.0
-    for c in range(len(classes.rates)):
-        total += classes.numbers[c] * classes.rates[c]
+def _join_list(classes, own, tile, c):
+    length = np.int64(classes.lengths[U(own + c)])
+    classes.lists[U(classes.first[U(own + c)] + length)] = tile
+    classes.ranks[U(tile * len(classes.rates) + c)] = length
+    classes.lengths[U(own + c)] = length + 1
+
+
+@scalar
+def _leave_list(classes, own, tile, c):
+    length, begin = np.int64(classes.lengths[U(own + c)]) - 1, classes.first[U(own + c)]
+    last = np.int64(classes.lists[U(begin + length)])
+    rank = np.int64(classes.ranks[U(tile * len(classes.rates) + c)])
+    classes.lists[U(begin + rank)] = last
+    classes.ranks[U(last * len(classes.rates) + c)] = rank
+    classes.lengths[U(own + c)] = length
+
+
+@total_rate.register(Classes)
+def _(choice, part):
+    total, own = 0.0, part * len(choice.rates)
+    for c in range(len(choice.rates) - 1):
+        total += choice.numbers[U(own + c)] * choice.rates[U(c)]
     return total
 
 
-@scalar
-def choose(classes, total, u):
-    """The place in memory of a site, drawn by its rate, and what is left of u."""
-    left, c, last = u * total, 0, 0
-    for k in range(len(classes.rates)):
-        rate = classes.numbers[k] * classes.rates[k]
+@choose.register(Classes)
+def _(choice, sites, part, total, u, word):
+    own, left, c = part * len(choice.rates), u * total, 0
+    for k in range(len(choice.rates) - 1):
+        rate = choice.numbers[U(own + k)] * choice.rates[U(k)]
         if rate > 0.0:
-            last = k
+            c = k
             if left < rate:
                 break
             left -= rate
-    c = last
-    number = classes.numbers[c]
-    left = left / classes.rates[c]
-    rank = min(np.int64(left), number - 1)
-    return _nth(classes, c, rank), min(left - rank, 1.0 - 2.0**-53)
+    # a tile of those with any, which is taken as often as it has sites of this class: the high part
+    # of a product of a random word tells the tile, its low part is as random again
+    length, begin = U(choice.lengths[U(own + c)]), choice.first[U(own + c)]
+    highest, stream = U(choice.highest[U(own + c)]), word
+    while True:
+        x, stream = next_word(stream)
+        k = np.int64(high_product(x, length))
+        tile = np.int64(choice.lists[U(begin + k)])
+        rank = np.int64(high_product(x * length, highest))
+        if rank < np.int64(choice.counts[U(tile * len(choice.rates) + c)]):
+            break
+        choice.refused[U(own + c)] += 1
+        if choice.refused[U(own + c)] > 4 * np.int64(length) + 64:
+            highest = U(_find_highest(choice, own, c))
+    return _nth(choice, tile << 8, c, rank), unit_of(next_word(stream)[0])
+
+
+@seldom
+def _find_highest(classes, own, c):
+    """The largest count of a class in a tile: with a larger number tiles are drawn in vain."""
+    highest, begin = 1, classes.first[own + c]
+    for k in range(classes.lengths[own + c]):
+        tile = np.int64(classes.lists[begin + k])
+        highest = max(highest, np.int64(classes.counts[tile * len(classes.rates) + c]))
+    classes.highest[own + c] = highest
+    classes.refused[own + c] = 0
+    return highest
 
 
 @scalar
-def _nth(classes, c, rank):
-    """Where the site with this rank among those of its class is in memory."""
-    node, width = 0, len(classes.rates)
-    for back in range(len(classes.levels)):
-        base = classes.levels[len(classes.levels) - 1 - back] + ((node * width + c) << 4)
-        # without a branch: which of the 16 is as good as random
-        up_to, before, below = 0, 0, 0
-        for k in range(FAN):
-            up_to += classes.tree[base + k]
-            passed = up_to <= rank
-            below += 1 if passed else 0
-            before = up_to if passed else before
-        node, rank = (node << 4) | below, rank - before
-    i = node << 8
-    address = np.uint64(classes.of.ctypes.data)
-    found = equal_bytes(address + np.uint64(i), np.uint64(c))
-    number = np.int64(bits_set(found))
-    while rank >= number:
-        rank, i = rank - number, i + 64
-        found = equal_bytes(address + np.uint64(i), np.uint64(c))
-        number = np.int64(bits_set(found))
-    for _ in range(rank):
-        found &= found - _ONE
-    return i + np.int64(lowest_bit(found))
+def _nth(classes, i, c, rank):
+    """The place of the site with this rank among those of its class in the tile that begins at a
+    place: four words have a bit for each site, and no branch depends on where it is."""
+    address, c = U(classes.of.ctypes.data) + U(i), U(c)
+    a, b = equal_bytes(address, c), equal_bytes(address + U(64), c)
+    d, e = equal_bytes(address + U(128), c), equal_bytes(address + U(192), c)
+    up_to_a = np.int64(bits_set(a))
+    up_to_b = up_to_a + np.int64(bits_set(b))
+    up_to_d = up_to_b + np.int64(bits_set(d))
+    word = a if rank < up_to_a else (b if rank < up_to_b else (d if rank < up_to_d else e))
+    before = 0 if rank < up_to_a else (
+        up_to_a if rank < up_to_b else (up_to_b if rank < up_to_d else up_to_d)
+    )  # fmt: skip
+    line = (rank >= up_to_a) + (rank >= up_to_b) + (rank >= up_to_d)
+    return i + 64 * line + np.int64(nth_bit(word, rank - before))
+
+
+@chance.register(Classes)
+def _(choice, around):
+    return choice.chances[U(around)]
+
+
+@keeps.register(Classes)
+def _(choice):
+    return True

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.kernels.packing import Packing
-from mesokit.method.kinetic_monte_carlo.engine.classes import classes_of
+from mesokit.method.kinetic_monte_carlo.engine.select import choice_of, clear
 from mesokit.method.kinetic_monte_carlo.engine.events import (
     CLOCK,
     NEXT,
@@ -18,6 +18,7 @@ from mesokit.method.kinetic_monte_carlo.engine.events import (
     Course,
     begin,
     events,
+    numbers,
 )
 from mesokit.method.kinetic_monte_carlo.engine.pairs import count_pairs
 from mesokit.method.kinetic_monte_carlo.lattice.grid import Sites, by_number, grid_of, length_of
@@ -41,19 +42,20 @@ class Events:
         self.states = len(given.model.states())
         self.n, memory = len(self.places), length_of(grid)
         self.lattice = Sites(grid, np.zeros(memory, kind_of(case)), np.zeros(memory, np.uint16))
-        self.classes = classes_of(self.model.rates, memory)
-        shape = len(given.model.events()), kind.neighbours + 1
+        self.choice = choice_of(given.select, self.model.rates, grid, 1)
+        self._shape = len(given.model.events()), kind.neighbours + 1
         self.course = Course(
             np.uint64(case.run.seed),
+            numbers(),
             np.zeros(CLOCK),
             np.zeros(1, np.uint64),
-            np.zeros(shape, np.int64),
+            np.zeros(self._shape[0] * self._shape[1], np.int64),
         )
         self.seconds, self._packing = {"events": 0.0}, Packing()
         events.compile_ahead(*self._arguments(), 0.0, AT_ONCE)
 
     def _arguments(self) -> tuple[Any, ...]:
-        return self._packing(self.model, self.lattice, self.classes, self.course)
+        return self._packing(self.model, self.lattice, self.choice, self.course)
 
     def start(self, states: NDArray[Any]) -> None:
         """Put the sites in states (n,), by number."""
@@ -61,10 +63,7 @@ class Events:
         self._begin()
 
     def _begin(self) -> None:
-        # classes follow from the states: as if no site had ever had another
-        self.classes.of.fill(255)
-        self.classes.numbers.fill(0)
-        self.classes.tree.fill(0)
+        clear(self.choice)
         begin(*self._arguments())
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
@@ -110,7 +109,7 @@ class Events:
     def happened(self) -> NDArray[np.int64]:
         """Events (processes, directions + 1) since the warm-up, the last column of those without a
         neighbour."""
-        return self.course.happened.copy()
+        return self.course.happened.reshape(self._shape).copy()
 
     def state(self) -> State:
         """States by number of the site, the clock and the events so far."""
@@ -119,7 +118,7 @@ class Events:
             "states": self.sites(),
             "clock": course.clock,
             "drawn": course.drawn,
-            "happened": course.happened,
+            "happened": self.happened(),
             "step": np.array(self.step),
         }
 
@@ -127,6 +126,6 @@ class Events:
         """Go on from a state."""
         course = self.course
         course.clock[:], course.drawn[:] = state["clock"], state["drawn"]
-        course.happened[:] = state["happened"]
+        course.happened[:] = np.ravel(state["happened"])
         self.step = int(state["step"])
         self.start(state["states"])

@@ -4,6 +4,7 @@ Memory is cut into tiles of 256 sites: 16 x 16 of them in 2D, 8 x 8 x 4 in 3D. W
 and writes then lies in few cache lines, however large the lattice is.
 """
 
+import itertools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,52 +12,80 @@ from numpy.typing import NDArray
 
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.scalar.intrinsics import with_item
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.jit import scalar
 
 TILE = 256  # sites
-FAR = -(2**31)
 BITS = {1: (8,), 2: (4, 4), 3: (3, 3, 2)}  # of coordinates within a tile
+SMALL = 2**31  # places in memory that numbers of 32 bits can tell apart
 
 
 class Grid(NamedTuple):
     """A lattice in memory; d is the dimension.
 
     size, bits, tiles: (d,) sites along each axis, bits of a coordinate within a tile, and tiles.
-    parity: (d,) -1 for the axes that make the parity of a site. closed: (d,) axes that end.
-    neighbours: of each site. steps: (2, neighbours, d) from even and odd sites. near: (256 *
-    neighbours,) how far on in memory a neighbour is, by place in the tile; FAR where it is in
-    another tile, or may be beyond the end of the lattice. back: (neighbours,) the direction from
-    a neighbour back.
+    neighbours: of each site. jumps: (kinds of tiles * 256 * neighbours,) how far on in memory a
+    neighbour is, by the place in the tile; the lowest number where there is none. kinds: (tiles,)
+    where the jumps from a tile begin: tiles at the two ends of an axis differ from those within.
+    back: (neighbours,) the direction from a neighbour back.
     """
 
     size: tuple[int, ...]
     bits: tuple[int, ...]
     tiles: tuple[int, ...]
-    parity: tuple[int, ...]
-    closed: tuple[bool, ...]
     neighbours: int
-    steps: NDArray[np.int64]
-    near: NDArray[np.int32]
+    jumps: NDArray[np.integer]
+    kinds: NDArray[np.int32]
     back: NDArray[np.int64]
 
 
 def grid_of(kind: Kind, size: tuple[int, ...], closed: tuple[bool, ...]) -> Grid:
     """The grid of a lattice."""
-    d = len(size)
-    bits = BITS[d]
-    sides = np.array([1 << b for b in bits])
-    tiles = tuple(int(-(-length // side)) for length, side in zip(size, sides, strict=True))
-    parity = tuple(-axis for axis in kind.parity)
-    within = np.indices(tuple(sides.tolist())).reshape(d, -1).T  # (256, d), by place in the tile
+    bits = BITS[len(size)]
+    sides = [1 << b for b in bits]
+    tiles = tuple(-(-length // side) for length, side in zip(size, sides, strict=True))
+    memory = TILE * int(np.prod(tiles))
+    number = np.int32 if memory < SMALL else np.int64
+    grid = Grid(
+        size, bits, tiles, kind.neighbours, np.zeros(0, number), np.zeros(0, np.int32), kind.back
+    )
+    # a tile of each kind: the first, one within, and the last along each axis
+    samples = [sorted({0, min(1, most - 1), most - 1}) for most in tiles]
+    within = np.indices(sides).reshape(len(size), -1).T  # (256, d), by place in the tile
     odd = (within @ np.array(kind.parity)) % 2  # sides are even: the parity is that of the lattice
-    towards = within[:, None, :] + kind.shifts[odd]
-    inside = ((towards >= 0) & (towards < sides)).all(axis=-1)
-    ends = (np.array(size) - 1) % sides  # where the lattice ends within a tile
-    inside &= ~((within[:, None, :] == ends) & (kind.shifts[odd] > 0)).any(axis=-1)
-    strides = np.cumprod([1, *sides[:0:-1]])[::-1]
-    near = np.where(inside, (kind.shifts[odd] * strides).sum(axis=-1), FAR)
-    near = near.astype(np.int32).ravel()
-    return Grid(size, bits, tiles, parity, closed, kind.neighbours, kind.shifts, near, kind.back)
+    jumps = [
+        _jumps(grid, np.array(sides) * tile + within, kind.shifts[odd], closed)
+        for tile in itertools.product(*samples)
+    ]
+    nth = np.zeros(tiles, np.int64)
+    for axis, (some, most) in enumerate(zip(samples, tiles, strict=True)):
+        along = np.clip(np.arange(most), 0, 1)
+        along[-1] = len(some) - 1
+        nth = nth * len(some) + along.reshape([-1 if k == axis else 1 for k in range(len(size))])
+    kinds = (nth.ravel() * TILE * kind.neighbours).astype(np.int32)
+    return grid._replace(jumps=np.concatenate(jumps).astype(number), kinds=kinds)
+
+
+def _jumps(
+    grid: Grid, r: NDArray[np.int64], steps: NDArray[np.int64], closed: tuple[bool, ...]
+) -> NDArray[np.int64]:
+    """How far on in memory the neighbours of sites r (256, d) are, flat, by their steps (256,
+    neighbours, d)."""
+    size = np.array(grid.size)
+    there = r[:, None, :] + steps
+    missing = (((there < 0) | (there >= size)) & np.array(closed)).any(axis=-1)
+    jump = places(grid, there % size) - places(grid, r)[:, None]
+    lowest = np.iinfo(grid.jumps.dtype).min
+    # places beyond the end of the lattice hold no sites: their jumps are never taken
+    return np.where(missing | (r >= size).any(axis=-1)[:, None], lowest, jump).ravel()
+
+
+def places(grid: Grid, r: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Where the sites with coordinates r (..., d) are in memory."""
+    tile = within = np.zeros(r.shape[:-1], np.int64)
+    for k, bits in enumerate(grid.bits):
+        tile = tile * grid.tiles[k] + (r[..., k] >> bits)
+        within = (within << bits) | (r[..., k] & ((1 << bits) - 1))
+    return (tile << 8) | within
 
 
 @scalar
@@ -85,25 +114,10 @@ def coordinates(grid, i):
 
 @scalar
 def neighbour(grid, i, direction):
-    """Where a neighbour of the site at a place is in memory; -1 where there is none."""
-    step = np.int64(grid.near[(i & 255) * grid.neighbours + direction])
-    return i + step if step != FAR else _far_neighbour(grid, i, direction)
-
-
-@seldom
-def _far_neighbour(grid, i, direction):
-    """The same, of a site at the edge of its tile."""
-    r, odd = coordinates(grid, i), 0
-    for k in range(len(r)):
-        odd ^= r[k] & grid.parity[k]
-    for k in range(len(r)):
-        x, length = r[k] + grid.steps[odd & 1, direction, k], grid.size[k]
-        if x < 0 or x >= length:
-            if grid.closed[k]:
-                return np.int64(-1)
-            x += length if x < 0 else -length
-        r = with_item(r, k, x)
-    return place(grid, r)
+    """Where a neighbour of the site at a place is in memory; negative where there is none."""
+    # indices without a sign: negative ones would be counted from the end
+    first = np.int64(grid.kinds[np.uint64(i >> 8)]) + (i & 255) * grid.neighbours
+    return i + np.int64(grid.jumps[np.uint64(first + direction)])
 
 
 class Sites(NamedTuple):
@@ -117,12 +131,7 @@ class Sites(NamedTuple):
 
 def by_number(grid: Grid) -> NDArray[np.int64]:
     """Places in memory (n,) of all sites, by number: along the last axis first."""
-    r = np.indices(grid.size)
-    tile, within = np.zeros(grid.size, np.int64), np.zeros(grid.size, np.int64)
-    for x, bits, tiles in zip(r, grid.bits, grid.tiles, strict=True):
-        tile = tile * tiles + (x >> bits)
-        within = (within << bits) | (x & ((1 << bits) - 1))
-    return ((tile << 8) | within).ravel()
+    return places(grid, np.moveaxis(np.indices(grid.size), 0, -1)).ravel()
 
 
 def length_of(grid: Grid) -> Any:

@@ -15,12 +15,22 @@ from mesokit.case.component import component
 from mesokit.method.kinetic_monte_carlo.lattice.grid import neighbour
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS, Kind
 from mesokit.method.kinetic_monte_carlo.model.protocol import (
+    MISSING,
+    UNLIKE,
     Model,
+    change_of_own,
+    change_of_weight,
+    number_alone,
     process_of,
-    surroundings,
-    surroundings_after,
+    weight,
 )
-from mesokit.method.kinetic_monte_carlo.model.table import Process, Rates, rates_of
+from mesokit.method.kinetic_monte_carlo.model.table import (
+    Process,
+    Rates,
+    rates_of,
+    weight_in,
+)
+from mesokit.scalar.bits import bits_set, nth_bit
 from mesokit.scalar.jit import scalar
 
 FAR = 3  # atoms: larger differences of heights are as good as this
@@ -30,6 +40,7 @@ AT_LEAST_AS_HIGH, ANY = (LEVEL, *HIGHER), tuple(range(2 * FAR + 1))
 # where an atom that comes down stays: at its site, at the lowest of the site and its neighbours, or
 # where it first touches the column or one beside it
 HERE, LOWEST, BESIDE = 0, 1, 2
+U = np.uint64
 
 
 class Growth(NamedTuple):
@@ -98,41 +109,50 @@ def _difference(height, other):
     return (higher if higher < FAR else FAR) + FAR
 
 
-@surroundings.register(Heights)
-def _(model, sites, i):
-    height, around = np.int64(sites.states[i]), np.int64(0)
-    for direction in range(sites.grid.neighbours):
-        j = neighbour(sites.grid, i, direction)
-        other = _difference(height, np.int64(sites.states[j])) if j >= 0 else 2 * FAR + 1
-        around += model.of.weights[direction * (2 * FAR + 2) + other]
-    return around
+@number_alone.register(Heights)
+def _(model, state):
+    return np.int64(0)
 
 
-@surroundings_after.register(Heights)
-def _(model, sites, i, direction, old, new):
-    height, row = np.int64(sites.states[i]), direction * (2 * FAR + 2)
-    before = np.int64(model.of.weights[row + _difference(height, old)])
-    return np.int64(sites.around[i]) + model.of.weights[row + _difference(height, new)] - before
+@weight.register(Heights)
+def _(model, direction, state, other):
+    there = _difference(state, other) if other != MISSING else np.int64(2 * FAR + 1)
+    return weight_in(model.of, direction, np.int64(0), there)
+
+
+@change_of_weight.register(Heights)
+def _(model, direction, state, old, new):
+    before, after = _difference(state, old), _difference(state, new)
+    of = model.of
+    return weight_in(of, direction, np.int64(0), after) - weight_in(of, direction, np.int64(0), before)
+
+
+@change_of_own.register(Heights)
+def _(model, old, new):
+    return np.int64(UNLIKE)
 
 
 @process_of.register(Heights)
 def _(model, sites, i, u):
-    height, around = np.int64(sites.states[i]), np.int64(sites.around[i])
-    left, row = u * model.of.rates[around], around * len(model.site)
-    last, chosen, target, rate = 0, -1, -1, 1.0
+    height, around = np.int64(sites.states[U(i)]), np.int64(sites.around[U(i)])
+    left, row = u * model.of.rates[U(around)], around * len(model.site)
+    last, chosen, target, rate = np.int64(0), np.int64(-1), np.int64(-1), 1.0
     for p in range(len(model.site)):
-        share = model.of.shares[row + p]
-        if share > 0.0 and model.of.fits[p] == 0:
-            last, chosen, rate, left = p, -1, share, left - share
+        share = model.of.shares[U(row + p)]
+        if share > 0.0 and model.of.fits[U(p)] == 0:
+            last, chosen, rate, left = p, np.int64(-1), share, left - share
         elif share > 0.0:
+            fitting = np.uint64(0)  # a bit for each direction with a neighbour that takes part
             for direction in range(sites.grid.neighbours):
                 j = neighbour(sites.grid, i, direction)
                 if j >= 0:
-                    there = _difference(height, np.int64(sites.states[j]))
-                    if (model.of.fits[p] >> there) & 1:
-                        last, chosen, target, rate, left = p, direction, j, share, left - share
-                        if left < 0.0:
-                            break
+                    there = _difference(height, np.int64(sites.states[U(j)]))
+                    fitting |= U((model.of.fits[U(p)] >> there) & 1) << U(direction)
+            number = np.int64(bits_set(fitting))
+            if number > 0:
+                rank = min(np.int64(left / share), number - 1)
+                last, chosen, rate = p, np.int64(nth_bit(fitting, rank)), share
+                target, left = neighbour(sites.grid, i, chosen), left - number * share
         if left < 0.0:
             break
     if chosen >= 0:

@@ -17,6 +17,9 @@ from mesokit.case.registry import family
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.scalar.jit import generic
 
+UNLIKE = -(2**40)
+MISSING = -(2**31)  # in place of the state of a neighbour, beyond the end of a lattice
+
 
 class Energies(NamedTuple):
     """Energy of a site in each state (s,), and of two neighbours in each pair of states (s, s)."""
@@ -54,14 +57,27 @@ class Model(ABC):
 
 
 @generic
-def surroundings(model, sites, i):
-    """The number of the surroundings of the site at place i in memory: all that the rates of what
-    may happen there depend on."""
+def number_alone(model, state):
+    """The number of the surroundings of a site in a state that has no neighbours."""
 
 
 @generic
-def surroundings_after(model, sites, i, direction, old, new):
-    """The same where the state of one neighbour alone has changed, and all else was known."""
+def weight(model, direction, state, other):
+    """What the neighbour in a direction adds to that number, by its state; MISSING: there is none.
+
+    The number tells all that the rates of what may happen at the site depend on.
+    """
+
+
+@generic
+def change_of_weight(model, direction, state, old, new):
+    """What that number changes by when a neighbour's state changes."""
+
+
+@generic
+def change_of_own(model, old, new):
+    """What that number changes by when the site's own state changes, the same whatever is around
+    it; UNLIKE: it must be found anew."""
 
 
 @generic

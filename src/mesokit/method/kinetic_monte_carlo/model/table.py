@@ -20,14 +20,20 @@ from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.lattice.grid import neighbour
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.model.protocol import (
+    UNLIKE,
     Model,
+    change_of_own,
+    change_of_weight,
+    number_alone,
     process_of,
-    surroundings,
-    surroundings_after,
+    weight,
 )
+from mesokit.scalar.bits import bits_set, nth_bit
+from mesokit.scalar.jit import scalar
 
 Counts = Sequence[int]  # of neighbours in each state, and of those that are missing
 MOST = 2**15  # surroundings
+U = np.uint64
 
 
 class Process(NamedTuple):
@@ -100,19 +106,28 @@ class Rates(NamedTuple):
     """The rates of processes that are in the order of their states, by surroundings.
 
     begin: (states + 1,) first process of each state. first: (states,) number of surroundings with
-    each state. weights: (neighbours * states * (others + 1),) by direction, state of the site and
-    state of the neighbour. rates: (m,) of all processes together. shares: (m * processes,), for
-    each neighbour that takes part. fits: (processes,) a bit for each state of a neighbour that may
-    take part, 0 without a neighbour. towards: a bit for each direction.
+    each state. bits: of a state, or that of a neighbour, in an index. weights: by direction, state
+    of the neighbour and of the site. own: by two states of a site, the difference of `first`, or
+    UNLIKE where weights differ too. rates: (m,) of all processes together. shares: (m * processes,),
+    for each neighbour that takes part. fits: (processes,) a bit for each state of a neighbour that
+    may take part, 0 without a neighbour. towards: a bit for each direction.
     """
 
     begin: NDArray[np.int64]
     first: NDArray[np.int32]
+    bits: int
     weights: NDArray[np.int32]
+    own: NDArray[np.int64]
     rates: NDArray[np.float64]
     shares: NDArray[np.float64]
     fits: NDArray[np.int64]
     towards: NDArray[np.int64]
+
+
+@scalar
+def weight_in(of, direction, state, other):
+    """The weight of a neighbour in the number of surroundings."""
+    return np.int64(of.weights[U((((direction << of.bits) | other) << of.bits) | state)])
 
 
 def in_order(processes: Sequence[Process]) -> list[Process]:
@@ -149,13 +164,22 @@ def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, e
                     total += share[p] * (1 if one.neighbour is None else partners[p])
             rates.append(total)
             shares.append(share)
+    bits = int(max(states - 1, others)).bit_length()
+    padded = np.zeros((z, 1 << bits, 1 << bits), np.int32)
+    padded[:, : others + 1, :states] = weights.transpose(0, 2, 1)
+    own = np.full((1 << bits, 1 << bits), UNLIKE)
+    for old, new in itertools.product(range(states), repeat=2):
+        if (weights[:, old] == weights[:, new]).all():
+            own[old, new] = int(first[new]) - int(first[old])
     begin = np.searchsorted([one.site[0] for one in ordered], range(states + 1))
     partner = [() if one.neighbour is None else one.neighbour[0] for one in ordered]
     every = range(z)
     return Rates(
         begin.astype(np.int64),
         first,
-        weights.ravel(),
+        bits,
+        padded.ravel(),
+        own.ravel(),
         np.array(rates),
         np.array(shares).ravel(),
         np.array([sum(1 << b for b in some) for some in partner]),
@@ -202,44 +226,48 @@ def _counts(
     return found, partners
 
 
-@surroundings.register(Table)
-def _(model, sites, i):
-    state = np.int64(sites.states[i])
-    around = np.int64(model.of.first[state])
-    row, step = state * (model.number + 1), model.number * (model.number + 1)
-    for direction in range(sites.grid.neighbours):
-        j = neighbour(sites.grid, i, direction)
-        around += model.of.weights[row + (np.int64(sites.states[j]) if j >= 0 else model.number)]
-        row += step
-    return around
+@number_alone.register(Table)
+def _(model, state):
+    return np.int64(model.of.first[U(state)])
 
 
-@surroundings_after.register(Table)
-def _(model, sites, i, direction, old, new):
-    row = (direction * model.number + np.int64(sites.states[i])) * (model.number + 1)
-    change = np.int64(model.of.weights[row + new]) - np.int64(model.of.weights[row + old])
-    return np.int64(sites.around[i]) + change
+@weight.register(Table)
+def _(model, direction, state, other):
+    return weight_in(model.of, direction, state, other if other >= 0 else model.number)
+
+
+@change_of_weight.register(Table)
+def _(model, direction, state, old, new):
+    return weight_in(model.of, direction, state, new) - weight_in(model.of, direction, state, old)
+
+
+@change_of_own.register(Table)
+def _(model, old, new):
+    return model.of.own[U((old << model.of.bits) | new)]
 
 
 @process_of.register(Table)
 def _(model, sites, i, u):
-    # the processes of this state, one neighbour after the other, until their rates make up u of all
-    state, around = np.int64(sites.states[i]), np.int64(sites.around[i])
-    left, row = u * model.of.rates[around], around * len(model.new)
-    last, chosen, target = 0, -1, -1
-    for p in range(model.of.begin[state], model.of.begin[state + 1]):
-        rate = model.of.shares[row + p]
-        if rate > 0.0 and model.of.fits[p] == 0:
-            last, chosen, target, left = p, -1, -1, left - rate
+    # the processes of this state, one after the other, until their rates make up u of all
+    state, around = np.int64(sites.states[U(i)]), np.int64(sites.around[U(i)])
+    left, row = u * model.of.rates[U(around)], around * len(model.new)
+    last, chosen, target = np.int64(0), np.int64(-1), np.int64(-1)
+    for p in range(model.of.begin[U(state)], model.of.begin[U(state + 1)]):
+        rate = model.of.shares[U(row + p)]
+        if rate > 0.0 and model.of.fits[U(p)] == 0:
+            last, chosen, target, left = p, np.int64(-1), np.int64(-1), left - rate
         elif rate > 0.0:
+            fitting = np.uint64(0)  # a bit for each direction with a neighbour that takes part
             for direction in range(sites.grid.neighbours):
-                if (model.of.towards[p] >> direction) & 1:
-                    j = neighbour(sites.grid, i, direction)
-                    there = np.int64(sites.states[j]) if j >= 0 else model.number
-                    if (model.of.fits[p] >> there) & 1:
-                        last, chosen, target, left = p, direction, j, left - rate
-                        if left < 0.0:
-                            break
+                j = neighbour(sites.grid, i, direction)
+                there = np.int64(sites.states[U(j)]) if j >= 0 else model.number
+                fits = (model.of.fits[U(p)] >> there) & (model.of.towards[U(p)] >> direction) & 1
+                fitting |= U(fits) << U(direction)
+            number = np.int64(bits_set(fitting))
+            if number > 0:
+                rank = min(np.int64(left / rate), number - 1)
+                last, chosen = p, np.int64(nth_bit(fitting, rank))
+                target, left = neighbour(sites.grid, i, chosen), left - number * rate
         if left < 0.0:
             break
-    return last, model.new[last], chosen, target, model.beside[last]
+    return last, model.new[U(last)], chosen, target, model.beside[U(last)]

@@ -1,8 +1,13 @@
-"""Search among the 64 bytes at an address, in a few instructions on every processor."""
+"""Bits of words, and search among the 64 bytes at an address: few instructions on any processor."""
 
 from typing import Any
 
+import numpy as np
+
 from mesokit.kernels.later import intrinsic
+from mesokit.scalar.jit import scalar
+
+_ONE = np.uint64(1)
 
 
 @intrinsic
@@ -51,3 +56,32 @@ def lowest_bit(typing_context: Any, word: Any) -> Any:
         return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 0))
 
     return types.uint64(types.uint64), generate
+
+
+@intrinsic
+def high_product(typing_context: Any, a: Any, b: Any) -> Any:
+    """The 64 high bits of the product of two words of 64 bits."""
+    from llvmlite import ir
+    from numba import types
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        wide = ir.IntType(128)
+        product = builder.mul(*(builder.zext(one, wide) for one in arguments))
+        return builder.trunc(builder.lshr(product, ir.Constant(wide, 64)), ir.IntType(64))
+
+    return types.uint64(types.uint64, types.uint64), generate
+
+
+@scalar
+def nth_bit(word, rank):
+    """The number of the bit with this rank among those of a word that are set, the lowest first."""
+    # without a branch: the half with it, then the half of that, down to one bit
+    at = np.int64(0)
+    for k in range(6):
+        half = 32 >> k
+        low = np.int64(bits_set(word & ((_ONE << np.uint64(half)) - _ONE)))
+        up = rank >= low
+        word = word >> np.uint64(half if up else 0)
+        rank -= low if up else 0
+        at += half if up else 0
+    return at
