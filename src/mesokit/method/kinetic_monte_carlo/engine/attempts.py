@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, keeps, put, total_rate
+from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, keeps, planes_of, put, total_rate
 from mesokit.method.kinetic_monte_carlo.lattice.grid import place
 from mesokit.scalar.intrinsics import with_item
 from mesokit.method.kinetic_monte_carlo.engine.stream import unit_of
@@ -61,3 +61,8 @@ def _(choice, around):
 @keeps.register(Attempts)
 def _(choice):
     return False
+
+
+@planes_of.register(Attempts)
+def _(choice):
+    return choice.planes

@@ -1,15 +1,18 @@
 """Seam of choices: how the next site, or bond, is chosen by its rate.
 
 The first argument is the choice; its class picks the implementation. All draw the same law. A part
-of the lattice is what one thread works on at a time: all of it, or a sector.
+of the lattice is what one thread works on at a time: all of it, or a sector. A place is that of a
+site, or of a bond.
 """
 
 from mesokit.scalar.jit import generic
 
+ANY = -1  # in place of a part: that which a place is in
+
 
 @generic
 def put(choice, part, i, around):
-    """Set the surroundings of the site or bond at a place; none of another part than this one."""
+    """Set the rate of what is at a place by its surroundings, if it lies in a part, or in ANY."""
 
 
 @generic
@@ -31,3 +34,13 @@ def chance(choice, around):
 @generic
 def keeps(choice):
     """Whether the surroundings of all sites are kept, to choose by."""
+
+
+@generic
+def planes_of(choice):
+    """How many places there are at a site."""
+
+
+@planes_of.otherwise
+def _(choice):
+    return 1

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.scalar.bits import bits_set, equal_bytes, high_product, nth_bit
-from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, keeps, put, total_rate
+from mesokit.method.kinetic_monte_carlo.engine.choice import ANY, chance, choose, keeps, put, total_rate
 from mesokit.method.kinetic_monte_carlo.engine.stream import next_word, unit_of
 from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE
 from mesokit.scalar.jit import scalar, seldom
@@ -114,12 +114,24 @@ def clear(classes: Classes) -> None:
     classes.ranks[order * width + idle] = np.concatenate([np.arange(m) for m in members])
 
 
+def rank(classes: Classes) -> None:
+    """Find where each tile is in its lists."""
+    width = len(classes.rates)
+    for k, length in enumerate(classes.lengths):
+        c, begin = k % width, int(classes.first[k])
+        members = classes.lists[begin : begin + length]
+        classes.ranks[members * width + c] = np.arange(length)
+
+
 @put.register(Classes)
 def _(choice, part, i, around):
     old, new = np.int64(choice.of[U(i)]), np.int64(choice.by_surroundings[U(around)])
     tile = i >> 8
-    if old == new or (choice.parts > 1 and choice.home[U(tile)] != part):
-        return
+    if choice.parts > 1 or part == ANY:
+        home = np.int64(choice.home[U(tile)])
+        if old == new or (part != home and part != ANY):
+            return
+        part = home
     choice.of[U(i)] = new
     width = len(choice.rates)
     row, own = tile * width, part * width

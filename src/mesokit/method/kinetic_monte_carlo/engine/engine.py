@@ -1,4 +1,4 @@
-"""The sites in memory: an engine that does events one after the other, exactly."""
+"""The sites in memory: events one after the other, exactly, or in sublattices on threads."""
 
 import math
 from collections.abc import Collection
@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.kernels.packing import Packing
-from mesokit.method.kinetic_monte_carlo.engine.select import choice_of, clear
+from mesokit.loops.threads import Threads
+from mesokit.method.kinetic_monte_carlo.engine import bonds  # noqa: F401  registers exchanges
 from mesokit.method.kinetic_monte_carlo.engine.events import (
     CLOCK,
     NEXT,
@@ -18,9 +19,16 @@ from mesokit.method.kinetic_monte_carlo.engine.events import (
     Course,
     begin,
     events,
-    numbers,
+    numbers_of,
 )
 from mesokit.method.kinetic_monte_carlo.engine.pairs import count_pairs
+from mesokit.method.kinetic_monte_carlo.engine.select import (
+    choice_of,
+    clear,
+    order_of,
+    set_order,
+)
+from mesokit.method.kinetic_monte_carlo.engine.sublattices import Blocks, cycles, sectors_of
 from mesokit.method.kinetic_monte_carlo.lattice.grid import Sites, by_number, grid_of, length_of
 from mesokit.method.kinetic_monte_carlo.start import kind_of
 from mesokit.processes.signals import heard
@@ -32,7 +40,7 @@ AT_ONCE = 1_000_000  # events, some tenths of a second, after which a signal is 
 class Events:
     """Engine of kinetic Monte Carlo (`mesokit.seam.engine.Engine`)."""
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: Case, threads: int = 1) -> None:
         given = case.lattice
         size, kind = tuple(map(int, case.box.size)), given.lattice
         closed = tuple(axis in given.ends for axis in case.box.axes)
@@ -42,41 +50,78 @@ class Events:
         self.states = len(given.model.states())
         self.n, memory = len(self.places), length_of(grid)
         self.lattice = Sites(grid, np.zeros(memory, kind_of(case)), np.zeros(memory, np.uint16))
-        self.choice = choice_of(given.select, self.model.rates, grid, 1)
         self._shape = len(given.model.events()), kind.neighbours + 1
+        number, seed = int(np.prod(self._shape)), np.uint64(case.run.seed)
         self.course = Course(
-            np.uint64(case.run.seed),
-            numbers(),
+            seed,
+            numbers_of(1),
             np.zeros(CLOCK),
             np.zeros(1, np.uint64),
-            np.zeros(self._shape[0] * self._shape[1], np.int64),
+            np.zeros(1, np.int64),
+            np.zeros(number, np.int64),
         )
         self.seconds, self._packing = {"events": 0.0}, Packing()
-        events.compile_ahead(*self._arguments(), 0.0, AT_ONCE)
+        self.blocks: Blocks | None = None
+        home = None
+        if given.sublattices is not None:
+            block = given.sublattices.of(len(size))
+            home, rim = sectors_of(grid, block)
+            # whole cycles in a step of the run
+            self.per_step = max(1, math.ceil(given.timestep / given.cycle(self.model.rates)))
+            self.threads = Threads(min(threads, self.n // block ** len(size)))
+            self.blocks = Blocks(
+                seed,
+                2 ** len(size),
+                self.n // block ** len(size),
+                given.timestep / self.per_step,
+                rim.ravel(),
+                rim.shape[1],
+                numbers_of(self.threads.size),
+                np.zeros(self.threads.size * number, np.int64),
+            )
+        self.choice = choice_of(given.select, self.model, grid, home)
+        begin.compile_ahead(*self._arguments())
+        if self.blocks is None:
+            events.compile_ahead(*self._arguments(), 0.0, AT_ONCE)
+        else:
+            self.threads.compile_ahead(cycles, *self._in_blocks(), 0, 0)
 
     def _arguments(self) -> tuple[Any, ...]:
         return self._packing(self.model, self.lattice, self.choice, self.course)
 
+    def _in_blocks(self) -> tuple[Any, ...]:
+        return self._packing(self.model, self.lattice, self.choice, self.blocks)
+
     def start(self, states: NDArray[Any]) -> None:
         """Put the sites in states (n,), by number."""
         self.lattice.states[self.places] = states
-        self._begin()
-
-    def _begin(self) -> None:
+        # rates follow from the states: as if no site had ever had another
         clear(self.choice)
         begin(*self._arguments())
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps: slices of time. Raises Interrupted on a signal."""
         began, goal = perf_counter(), self.step + steps
+        if self.blocks is None:
+            self._in_turn(goal)
+        else:
+            while self.step < goal:
+                first = self.step * self.per_step
+                last = first + self.per_step
+                self.threads.run(cycles, *self._in_blocks(), first, last)
+                self.step += 1
+                if heard() and self.step < goal:
+                    raise Interrupted
+        self.step = goal
+        self.seconds["events"] += perf_counter() - began
+
+    def _in_turn(self, goal: int) -> None:
         until = goal * self.timestep
         while not events(*self._arguments(), until, AT_ONCE):
             if heard():  # some events of the next step may have happened
                 done = math.floor(self.course.clock[TIME] / self.timestep)
                 self.step = max(self.step, min(done, goal - 1))
                 raise Interrupted
-        self.step = goal
-        self.seconds["events"] += perf_counter() - began
 
     @property
     def time(self) -> float:
@@ -86,7 +131,10 @@ class Events:
     @property
     def absorbed(self) -> bool:
         """Whether nothing can happen any more."""
-        return bool(self.course.clock[NEXT] == np.inf)
+        if self.blocks is None:
+            return bool(self.course.clock[NEXT] == np.inf)
+        able = self.choice.numbers.reshape(self.choice.parts, -1)[:, :-1]
+        return not able.any()
 
     def check(self) -> None:
         """Do nothing: no state is invalid."""
@@ -94,6 +142,8 @@ class Events:
     def end_warmup(self) -> None:
         """Forget the events of the warm-up."""
         self.course.happened.fill(0)
+        if self.blocks is not None:
+            self.blocks.happened.fill(0)
 
     def sites(self, ids: Integers | None = None) -> NDArray[np.integer]:
         """States (n,) of all sites, or of some, by number."""
@@ -109,23 +159,33 @@ class Events:
     def happened(self) -> NDArray[np.int64]:
         """Events (processes, directions + 1) since the warm-up, the last column of those without a
         neighbour."""
-        return self.course.happened.reshape(self._shape).copy()
+        found = self.course.happened.copy()
+        if self.blocks is not None:
+            found += self.blocks.happened.reshape(self.threads.size, -1).sum(axis=0)
+        return found.reshape(self._shape)
 
     def state(self) -> State:
-        """States by number of the site, the clock and the events so far."""
+        """States by number of the site, the clock, the events so far and the order of lists."""
         course = self.course
         return {
             "states": self.sites(),
             "clock": course.clock,
             "drawn": course.drawn,
+            "vain": course.vain,
             "happened": self.happened(),
             "step": np.array(self.step),
+            **order_of(self.choice),
         }
 
     def restore(self, state: State) -> None:
         """Go on from a state."""
         course = self.course
         course.clock[:], course.drawn[:] = state["clock"], state["drawn"]
+        course.vain[:] = state["vain"]
         course.happened[:] = np.ravel(state["happened"])
+        if self.blocks is not None:
+            self.blocks.happened.fill(0)
         self.step = int(state["step"])
+        order = {name: np.array(state[name]) for name in order_of(self.choice)}
         self.start(state["states"])
+        set_order(self.choice, order)

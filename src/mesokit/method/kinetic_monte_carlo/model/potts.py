@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from mesokit.case.component import component, param, tag
+from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.model.exchange import NAME as EXCHANGE
+from mesokit.method.kinetic_monte_carlo.model.exchange import exchanges
 from mesokit.method.kinetic_monte_carlo.model.ising import acceptance
 from mesokit.method.kinetic_monte_carlo.model.protocol import Energies
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
@@ -25,11 +28,29 @@ class Potts(TableModel):
     q: int = param(3, doc="states of a site", symbol="q", ge=2, le=4)
     coupling: float = param(1.0, doc="energy gained by alike neighbours", symbol="J", unit="energy")
     kT: float = param(1.0, doc="thermal energy; 0: nothing raises the energy", unit="energy", ge=0)
+    moves: Literal["turn", "exchange"] = param(
+        "turn", doc="sites turn, or neighbours exchange their states (Kawasaki 1966)"
+    )
     dynamics: Literal["metropolis", "glauber"] = param("metropolis", doc="rate of a turn")
     attempt_rate: float = param(1.0, doc="largest rate of turns", unit="1/time", gt=0)
 
     def states(self) -> tuple[str, ...]:
         return tuple(f"state {k}" for k in range(self.q))
+
+    def kernel(self, kind: Kind, ends: bool) -> Any:
+        """The table of what may happen."""
+        if self.moves == "exchange":
+            return exchanges(
+                self.energies(),
+                lambda change: self.attempt_rate * acceptance(self.dynamics, change, self.kT),
+                kind,
+                ends,
+            )
+        return super().kernel(kind, ends)
+
+    def events(self) -> list[str]:
+        """Names of what may happen."""
+        return [EXCHANGE] if self.moves == "exchange" else super().events()
 
     def processes(self) -> list[Process]:
         """Turns from each state to each other."""
