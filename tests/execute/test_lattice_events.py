@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mesokit.method.kinetic_monte_carlo.engine import engine as engine_module
-from mesokit.method.kinetic_monte_carlo.engine.classes import IDLE
 from mesokit.method.kinetic_monte_carlo.lattice.grid import by_number, grid_of, neighbour
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
 from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
@@ -80,27 +79,36 @@ def test_a_lattice_ends_where_it_is_closed(kind):
 
 def kept(engine):
     """What an engine keeps of its sites beside their states."""
-    classes = engine.classes
-    return [
-        engine.lattice.around[engine.places],
-        classes.of,
-        classes.numbers,
-        classes.tree,
-    ]
+    return {
+        "around": engine.lattice.around[engine.places],
+        **{name: getattr(engine.choice, name) for name in ("of", "numbers", "counts", "lengths")},
+        "ranks": ranks(engine.choice),
+    }
+
+
+def ranks(choice):
+    """Where each tile is in the list of each class that it has any of."""
+    return np.where(choice.counts > 0, choice.ranks, -1)
 
 
 @pytest.mark.parametrize("name", MODELS)
 @pytest.mark.parametrize("kind", ["square", "triangular", "cubic"])
 def test_what_is_kept_of_sites_is_as_if_it_were_made_anew(name, kind):
     size = (21, 20, 6)[: KINDS[kind].dimension]
-    engine = lattice_engine(size, MODELS[name], kind=kind, ends=["x"], timestep=0.5)
+    engine = lattice_engine(
+        size, MODELS[name], kind=kind, ends=["x"], timestep=0.5, select="classes"
+    )
     engine.advance(12)
     assert engine.happened().sum() > 500
-    found = [array.copy() for array in kept(engine)]
+    found = {name: array.copy() for name, array in kept(engine).items()}
     engine.restore(engine.state())
-    for array, anew in zip(found, kept(engine), strict=True):
+    for array, anew in zip(found.values(), kept(engine).values(), strict=True):
         np.testing.assert_array_equal(array, anew)
-    assert (engine.classes.of != IDLE).sum() == engine.classes.numbers.sum()
+    choice = engine.choice
+    able = choice.of[engine.places] < len(choice.rates) - 1
+    assert able.sum() == choice.numbers[:-1].sum() == choice.counts.reshape(-1, len(choice.rates))[
+        :, :-1
+    ].sum()
 
 
 @given(cuts=st.lists(st.integers(1, 40), min_size=1, max_size=6), seed=st.integers(0, 2**63))

@@ -2,11 +2,7 @@
 
 from typing import Any
 
-from llvmlite import ir
-from numba import types
-from numba.core import cgutils
-from numba.extending import intrinsic
-from numba.np.arrayobj import make_array
+from mesokit.kernels.later import intrinsic
 
 LINE = 64  # bytes of a cache line
 
@@ -15,6 +11,10 @@ LINE = 64  # bytes of a cache line
 def prefetch(typing_context: Any, array: Any, row: Any, byte: Any) -> Any:
     """Ask for the cache line with a byte of a row of an array, which must exist or lie just beyond
     the end."""
+    from llvmlite import ir
+    from numba import types
+    from numba.core import cgutils
+    from numba.np.arrayobj import make_array
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         given = make_array(signature.args[0])(context, builder, arguments[0])

@@ -8,10 +8,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, keeps, planes_of, put, total_rate
-from mesokit.method.kinetic_monte_carlo.lattice.grid import place
+from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, fetch, foresee, keeps, planes_of, put, total_rate
+from mesokit.method.kinetic_monte_carlo.lattice.grid import fetch_site, place
 from mesokit.scalar.intrinsics import with_item
+from mesokit.scalar.jit import scalar
 from mesokit.method.kinetic_monte_carlo.engine.stream import unit_of
+
+AHEAD = 8  # attempts: when a site is fetched
+U = np.uint64
 
 
 class Attempts(NamedTuple):
@@ -41,8 +45,8 @@ def _(choice, part):
     return choice.sites * choice.highest * (0.5 * choice.planes if choice.planes > 1 else 1)
 
 
-@choose.register(Attempts)
-def _(choice, sites, part, total, u, word):
+@scalar
+def _drawn(choice, sites, u):
     along = u * choice.planes
     plane = np.int64(along)
     u, r = along - plane, choice.size
@@ -50,7 +54,25 @@ def _(choice, sites, part, total, u, word):
         along = u * choice.size[k]
         x = np.int64(along)
         r, u = with_item(r, k, x), along - x
-    return place(sites.grid, r) + plane * choice.memory, unit_of(word)
+    return place(sites.grid, r) + plane * choice.memory
+
+
+@choose.register(Attempts)
+def _(choice, sites, part, total, u, word):
+    return _drawn(choice, sites, u), unit_of(word)
+
+
+@foresee.register(Attempts)
+def _(choice, sites, total, numbers):
+    for k in range(AHEAD):
+        fetch_site(sites, _drawn(choice, sites, numbers.units[U(k)]) % len(sites.states))
+
+
+@fetch.register(Attempts)
+def _(choice, sites, numbers, k):
+    if k + AHEAD < len(numbers.units):
+        place = _drawn(choice, sites, numbers.units[U(k + AHEAD)])
+        fetch_site(sites, place % len(sites.states))
 
 
 @chance.register(Attempts)

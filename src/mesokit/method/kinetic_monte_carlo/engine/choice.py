@@ -37,6 +37,16 @@ def keeps(choice):
 
 
 @generic
+def foresee(choice, sites, total, numbers):
+    """Note where the events to come will be, if little changes until then."""
+
+
+@generic
+def fetch(choice, sites, numbers, k):
+    """Have memory fetch what the event k of those to come will read."""
+
+
+@generic
 def planes_of(choice):
     """How many places there are at a site."""
 

@@ -16,12 +16,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.scalar.bits import bits_set, equal_bytes, high_product, nth_bit
-from mesokit.method.kinetic_monte_carlo.engine.choice import ANY, chance, choose, keeps, put, total_rate
+from mesokit.method.kinetic_monte_carlo.engine.choice import (
+    ANY,
+    chance,
+    choose,
+    fetch,
+    foresee,
+    keeps,
+    put,
+    total_rate,
+)
 from mesokit.method.kinetic_monte_carlo.engine.stream import next_word, unit_of
-from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE
+from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE, fetch_site
+from mesokit.scalar.prefetch import LINE, prefetch
 from mesokit.scalar.jit import scalar, seldom
 
 MOST = 256  # classes, as bytes have values
+EARLY, LATE = 16, 8  # events ahead, when the classes of a tile and the rest of it are fetched
 U = np.uint64
 
 
@@ -175,8 +186,8 @@ def _(choice, part):
     return total
 
 
-@choose.register(Classes)
-def _(choice, sites, part, total, u, word):
+@scalar
+def _class(choice, part, total, u):
     own, left, c = part * len(choice.rates), u * total, 0
     for k in range(len(choice.rates) - 1):
         rate = choice.numbers[U(own + k)] * choice.rates[U(k)]
@@ -185,21 +196,70 @@ def _(choice, sites, part, total, u, word):
             if left < rate:
                 break
             left -= rate
-    # a tile of those with any, which is taken as often as it has sites of this class: the high part
-    # of a product of a random word tells the tile, its low part is as random again
-    length, begin = U(choice.lengths[U(own + c)]), choice.first[U(own + c)]
-    highest, stream = U(choice.highest[U(own + c)]), word
+    return c
+
+
+@scalar
+def _try(choice, own, c, length, highest, stream):
+    """A tile of those with any of a class, and the rank of a site in it, which there may not be:
+    so each is taken as often as it has sites of the class."""
+    # the high part of a product with a random word is random, and its low part is as random again
+    x, stream = next_word(stream)
+    k = np.int64(high_product(x, length))
+    tile = np.int64(choice.lists[U(choice.first[U(own + c)] + k)])
+    return tile, np.int64(high_product(x * length, highest)), stream
+
+
+@choose.register(Classes)
+def _(choice, sites, part, total, u, word):
+    own, c, stream = part * len(choice.rates), _class(choice, part, total, u), word
+    length, highest = U(choice.lengths[U(own + c)]), U(choice.highest[U(own + c)])
     while True:
-        x, stream = next_word(stream)
-        k = np.int64(high_product(x, length))
-        tile = np.int64(choice.lists[U(begin + k)])
-        rank = np.int64(high_product(x * length, highest))
+        tile, rank, stream = _try(choice, own, c, length, highest, stream)
         if rank < np.int64(choice.counts[U(tile * len(choice.rates) + c)]):
             break
         choice.refused[U(own + c)] += 1
         if choice.refused[U(own + c)] > 4 * np.int64(length) + 64:
             highest = U(_find_highest(choice, own, c))
     return _nth(choice, tile << 8, c, rank), unit_of(next_word(stream)[0])
+
+
+@foresee.register(Classes)
+def _(choice, sites, total, numbers):
+    for k in range(len(numbers.hints)):
+        c, stream = _class(choice, 0, total, numbers.units[U(k)]), numbers.streams[U(k)]
+        length, highest = U(choice.lengths[U(c)]), U(choice.highest[U(c)])
+        tile, rank, stream = _try(choice, 0, c, length, highest, stream)
+        tries = 0
+        while rank >= np.int64(choice.counts[U(tile * len(choice.rates) + c)]) and tries < 8:
+            tile, rank, stream = _try(choice, 0, c, length, highest, stream)
+            tries += 1
+        numbers.hints[U(k)] = (((tile << 8) | c) << 8) | rank
+        if k < EARLY:
+            _fetch_tile(choice, tile)
+    for k in range(LATE):
+        _fetch_hint(choice, sites, numbers.hints[U(k)])
+
+
+@scalar
+def _fetch_hint(choice, sites, hint):
+    place = _nth(choice, (hint >> 16) << 8, (hint >> 8) & 255, hint & 255)
+    fetch_site(sites, place % len(sites.states))
+
+
+@scalar
+def _fetch_tile(choice, tile):
+    for line in range(4):
+        prefetch(choice.of, tile << 8, LINE * line)
+
+
+@fetch.register(Classes)
+def _(choice, sites, numbers, k):
+    # first the classes of its tile, then what is kept of the site that these tell
+    if k + EARLY < len(numbers.hints):
+        _fetch_tile(choice, numbers.hints[U(k + EARLY)] >> 16)
+    if k + LATE < len(numbers.hints):
+        _fetch_hint(choice, sites, numbers.hints[U(k + LATE)])
 
 
 @seldom

@@ -18,6 +18,8 @@ from mesokit.method.kinetic_monte_carlo.engine.choice import (
     ANY,
     chance,
     choose,
+    fetch,
+    foresee,
     keeps,
     planes_of,
     total_rate,
@@ -31,6 +33,7 @@ EVENT = METHOD + np.uint64(90)  # purpose of the random numbers of events
 
 U = np.uint64
 AHEAD = 64  # events whose random numbers are made together, in vector instructions
+NEAR = 2**17  # sites that a processor's cache has at hand
 TIME, TIME_REST, NEXT, NEXT_REST, CLOCK = 0, 1, 2, 3, 4  # places in `Course.clock`
 
 
@@ -38,17 +41,19 @@ class Numbers(NamedTuple):
     """Random numbers of AHEAD events of each thread, each by the event's number alone.
 
     units: uniform in [0, 1). waits: exponential with mean 1. streams: words for all else.
+    hints: where the events may be, for memory to fetch in time.
     """
 
     units: NDArray[np.float64]
     waits: NDArray[np.float64]
     streams: NDArray[np.uint64]
+    hints: NDArray[np.int64]
 
 
 def numbers_of(threads: int) -> Numbers:
     """Memory for those of so many threads."""
     size = AHEAD * threads
-    return Numbers(np.zeros(size), np.zeros(size), np.zeros(size, np.uint64))
+    return Numbers(np.zeros(size), np.zeros(size), np.zeros(size, np.uint64), np.zeros(size, np.int64))
 
 
 @scalar
@@ -130,12 +135,17 @@ def events(model, sites, choice, course, until, most):
     clock, none, total = course.clock, sites.grid.neighbours, total_rate(choice, 0)
     last, last_rest, now, rest = clock[TIME], clock[TIME_REST], clock[NEXT], clock[NEXT_REST]
     n, vain, numbers = course.drawn[0], course.vain[0], course.numbers
+    far = len(sites.states) > NEAR
     draw(numbers, course.seed, EVENT, n, 0, 0)
+    if far and total > 0.0:
+        foresee(choice, sites, total, numbers)
     while now < until or (now == until and rest <= 0.0):
         if most == 0:
             break
         most -= 1
         k = n & U(AHEAD - 1)
+        if far and total > 0.0:
+            fetch(choice, sites, numbers, np.int64(k))
         i, left = choose(choice, sites, 0, total, numbers.units[k], numbers.streams[k])
         around = known(model, sites, i) if keeps(choice) else found(model, sites, i)
         happens = chance(choice, around)
@@ -156,6 +166,8 @@ def events(model, sites, choice, course, until, most):
         n += U(1)
         if n & U(AHEAD - 1) == 0:
             draw(numbers, course.seed, EVENT, n, 0, 0)
+            if far and total > 0.0:
+                foresee(choice, sites, total, numbers)
     clock[TIME], clock[TIME_REST], clock[NEXT], clock[NEXT_REST] = last, last_rest, now, rest
     course.drawn[0], course.vain[0] = n, vain
     return most > 0

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, keeps, put, total_rate
+from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, fetch, foresee, keeps, put, total_rate
 
 
 class Linear(NamedTuple):
@@ -50,3 +50,13 @@ def _(choice, around):
 @keeps.register(Linear)
 def _(choice):
     return True
+
+
+@foresee.register(Linear)
+def _(choice, sites, total, numbers):
+    pass
+
+
+@fetch.register(Linear)
+def _(choice, sites, numbers, k):
+    pass

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, keeps, put, total_rate
+from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, fetch, foresee, keeps, put, total_rate
 
 U = np.uint64
 
@@ -67,3 +67,13 @@ def _(choice, around):
 @keeps.register(Tree)
 def _(choice):
     return True
+
+
+@foresee.register(Tree)
+def _(choice, sites, total, numbers):
+    pass
+
+
+@fetch.register(Tree)
+def _(choice, sites, numbers, k):
+    pass

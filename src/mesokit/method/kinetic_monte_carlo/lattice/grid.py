@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
+from mesokit.scalar.prefetch import LINE, prefetch
 
 TILE = 256  # sites
 BITS = {1: (8,), 2: (4, 4), 3: (3, 3, 2)}  # of coordinates within a tile
@@ -127,6 +128,14 @@ class Sites(NamedTuple):
     grid: Grid
     states: NDArray[np.integer]
     around: NDArray[np.uint16]
+
+
+@scalar
+def fetch_site(sites, i):
+    """Have memory fetch what is kept of a site and of those beside it."""
+    for line in range(-1, 2):
+        prefetch(sites.states, i, LINE * line)
+        prefetch(sites.around, i, LINE * line)
 
 
 def by_number(grid: Grid) -> NDArray[np.int64]:
