@@ -32,6 +32,11 @@ from mesokit.loops.neighbours import nearest_image
 from mesokit.method.flock.engine.move import flown
 from mesokit.method.flock.noise import RULES as NOISES
 from mesokit.method.flock.noise import protocol as birds
+from mesokit.method.kinetic_monte_carlo.lattice.grid import Sites, grid_of, length_of
+from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
+from mesokit.method.kinetic_monte_carlo.model import protocol as lattices
+from mesokit.method.kinetic_monte_carlo.model.ising import Ising
+from mesokit.method.kinetic_monte_carlo.model.solid_on_solid import SolidOnSolid
 from mesokit.method.mpcd import collision, thermostat
 from mesokit.method.mpcd.collision import protocol as rules
 from mesokit.method.mpcd.engine.beads import interactions
@@ -107,6 +112,15 @@ def total(asked: Any, d: int) -> tuple[float, ...]:
     return {interactions.BeadForce: vec(d), interactions.Energy: (0.0,)}.get(type(asked), ())
 
 
+LATTICES = {2: KINDS["square"], 3: KINDS["cubic"]}
+
+
+def sites(d: int) -> Sites:
+    """A small lattice."""
+    grid = grid_of(LATTICES[d], (4,) * d, (False,) * d)
+    return Sites(grid, np.zeros(length_of(grid), np.uint8), np.zeros(length_of(grid), np.uint16))
+
+
 # Of each generic function: the arguments after the first, which is p, in d dimensions.
 ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     histories.speed: lambda p, d: (1.0,),
@@ -164,6 +178,11 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     contacts.normal_energy: lambda p, d: (1.0, 1.0),
     birds.counted: lambda p, d: (),
     birds.turned: lambda p, d: (COUNTER, WHOLE, vec(d), vec(d), WHOLE),
+    lattices.number_alone: lambda p, d: (WHOLE,),
+    lattices.weight: lambda p, d: (WHOLE, WHOLE, WHOLE),
+    lattices.change_of_weight: lambda p, d: (WHOLE, WHOLE, WHOLE, WHOLE),
+    lattices.change_of_own: lambda p, d: (WHOLE, WHOLE),
+    lattices.process_of: lambda p, d: (sites(d), WHOLE, 0.5),
     flown: lambda p, d: (vec(d), vec(d), vec(d)),
     spheres.restitution: lambda p, d: (1.0,),
     spheres.next_contact: lambda p, d: (vec(d), vec(d), 1.0, 0.0),
@@ -201,6 +220,9 @@ def parts(d: int) -> Iterator[Any]:
     yield from (rule().kernel() for rule in (*RULES, *NOISES))
     yield from (Linear(1.0, 0.0, 1.0, 0.0, 1.0), HertzContact(1.0, 1.0, 1.0))
     yield interactions.Virial(1.0, tensor, 1.0)
+    yield Ising().kernel(LATTICES[d], False)
+    yield Ising(moves="exchange").kernel(LATTICES[d], False)
+    yield SolidOnSolid().kernel(LATTICES[d], False)
 
 
 def physics(d: int, **parts: Any) -> Physics:

@@ -47,18 +47,6 @@ def bits_set(typing_context: Any, word: Any) -> Any:
 
 
 @intrinsic
-def lowest_bit(typing_context: Any, word: Any) -> Any:
-    """The number of the lowest bit that is set, 64 if none is."""
-    from llvmlite import ir
-    from numba import types
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 0))
-
-    return types.uint64(types.uint64), generate
-
-
-@intrinsic
 def high_product(typing_context: Any, a: Any, b: Any) -> Any:
     """The 64 high bits of the product of two words of 64 bits."""
     from llvmlite import ir
