@@ -8,7 +8,9 @@ from mesokit.case.amounts import count_text
 from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.method.kinetic_monte_carlo.engine.classes import MOST as IDLE
+from mesokit.method.kinetic_monte_carlo.engine.classes import MOST, by_factors_of_two
+from mesokit.method.kinetic_monte_carlo.engine.select import selected
+from mesokit.method.kinetic_monte_carlo.lattice.grid import BITS
 from mesokit.method.kinetic_monte_carlo.start import sites_of
 
 MOST_SITES = 2**40
@@ -22,10 +24,36 @@ def check(case: Case) -> None:
     table = case.lattice.model.kernel(case.lattice.lattice, bool(case.lattice.ends))
     if not table.rates.max(initial=0.0) > 0:
         raise CaseError("lattice.model: all rates are 0; expected something that may happen")
-    different = len(set(table.rates[table.rates > 0].tolist()))
-    if different > IDLE:
-        raise CaseError(
-            f"lattice.model: {different} different rates of a site; expected at most {IDLE}"
+    select = selected(case.lattice.select, table.rates)
+    if select in ("classes", "groups"):
+        bounds = table.rates if select == "classes" else by_factors_of_two(table.rates)
+        different = len(set(bounds[bounds > 0].tolist()))
+        if different >= MOST:
+            raise CaseError(
+                f"lattice.model: {different} different rates of a site"
+                f"{'' if select == 'classes' else ', by factors of two'}; expected at most "
+                f"{MOST - 1} with lattice.select = {show(select)}; "
+                f"{show('groups' if select == 'classes' else 'tree')} takes more"
+            )
+    for message in _sublattices(case):
+        raise CaseError(message)
+
+
+def _sublattices(case: Case) -> Iterator[str]:
+    given = case.lattice.sublattices
+    if given is None:
+        return
+    size, select = case.box.size, case.lattice.select
+    block = given.of(len(size))
+    side = 2 * max(1 << bits for bits in BITS[len(size)])
+    if block % side:
+        yield f"lattice.sublattices.block = {block}: expected a multiple of {side}"
+    if any(length % block for length in size):
+        yield f"box.size = {show(list(size))}: expected multiples of lattice.sublattices.block = {block}"
+    if select not in ("auto", "classes", "groups"):
+        yield (
+            f"lattice.select = {show(select)}: expected 'auto', 'classes' or 'groups' with "
+            "lattice.sublattices"
         )
 
 

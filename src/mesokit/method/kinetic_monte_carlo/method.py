@@ -58,6 +58,6 @@ METHOD = Method(
     dimensions=(1, 2, 3),
     summary=summary,
     initial=InitialState(first_state, Events.start, ("states",), files_of, "lattice.start.run"),
-    engine=lambda case, threads, measures: Events(case, threads),
+    engine=lambda case, threads, measures: Events(case, threads, measures),
     log=columns,
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -11,12 +12,26 @@ from mesokit.case.case import Case
 from mesokit.case.component import name_of
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
-FAN = 16
+from mesokit.method.kinetic_monte_carlo.engine.select import selected
 from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE
 from mesokit.method.kinetic_monte_carlo.start import RunStart, sites_of
 from mesokit.seam.method import Row, Summary
 
-SECONDS = 0.2e-6  # of a thread for an event, where the project measures (docs/benchmark.md)
+# of a thread for an event, or an attempt, where the project measures (docs/benchmark.md)
+SECONDS = {
+    "classes": 0.17e-6,
+    "groups": 0.25e-6,
+    "tree": 0.3e-6,
+    "attempts": 0.08e-6,
+    "linear": 1e-9,  # and for each site
+}
+WORDS = {
+    "classes": "by classes",
+    "groups": "by groups of rates within a factor of two",
+    "tree": "by a tree of sums",
+    "attempts": "by attempts",
+    "linear": "by a walk over all sites",
+}
 LONGEST = 1e10  # seconds: longer ones are not told apart
 EQUILIBRIUM = ("lattice-energy", "magnetisation")  # what theory expects in it alone
 BYTES = 4  # of memory for each site: its state, its surroundings and its class
@@ -30,24 +45,40 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     distinct = np.unique(table.rates[table.rates > 0])
     # how many events there will be depends on the states: at most these, were all sites the fastest
     most = float(distinct.max()) * sites * steps * given.timestep
-    seconds = most * SECONDS
-    nodes = -(-sites // (TILE * FAN)) * FAN
-    memory = sites * (BYTES + 8) + 5 * nodes * len(distinct) + 150_000_000
+    select = selected(given.select, table.rates)
+    each = SECONDS[select] * (sites if select == "linear" else 1)
+    at_once = 1 if given.sublattices is None else min(threads or 1, sites // blocks_of(case))
+    seconds = most * each / at_once
+    rates = {"classes": 10 * len(distinct) / TILE, "tree": 32.0, "linear": 8.0}.get(select, 0.0)
+    memory = int(sites * (BYTES + 8 + rates)) + 150_000_000
     stored = stored_bytes(case.trajectory, case.groups, case.box.dimension, case.run.steps)
     rows: list[Row] = [
         ("sites", f"{sites:,}".replace(",", " "), f"{given.kind}, {table_neighbours(case)}"),
         ("model", name_of(given.model), f"{len(given.model.events())} processes"),
         ("rates of a site", f"{len(distinct)}", f"{number(distinct.min())} to "
-         f"{number(distinct.max(), '1/time')}: chosen by classes"),
+         f"{number(distinct.max(), '1/time')}"),
+        ("choice of events", WORDS[select], f"{number(each, 's')} each, estimate"),
         ("time of the run", number(steps * given.timestep, "time"), f"{steps} slices"),
         ("events", f"< {number(most)}", "were all sites the fastest"),
-        ("run time", f"< {duration_text(min(seconds, LONGEST))}", "estimate: 1 thread"),
+        ("run time", f"< {duration_text(min(seconds, LONGEST))}", f"estimate: {at_once} thread{'s' if at_once > 1 else ''}"),
         ("memory", size_text(memory), "estimate"),
     ]  # fmt: skip
+    if given.sublattices is not None:
+        block = given.sublattices.of(len(case.box.size))
+        per_step = max(1, math.ceil(given.timestep / given.cycle(table.rates)))
+        rows.append(
+            ("sublattices", f"blocks of {block} sites", f"{per_step} cycles in a step; approximate")
+        )
     if stored:
         rows.append(("trajectory", size_text(stored), "estimate"))
     warnings = [*run_warnings(case, memory, stored), *_warnings(case, float(distinct.max()))]
     return Summary(tuple(rows), tuple(warnings), seconds, {"sites": sites}, memory)
+
+
+def blocks_of(case: Case) -> int:
+    """Sites of a block of sublattices."""
+    given = case.lattice.sublattices
+    return given.of(len(case.box.size)) ** len(case.box.size) if given is not None else 1
 
 
 def table_neighbours(case: Case) -> str:

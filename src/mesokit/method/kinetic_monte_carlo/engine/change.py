@@ -7,6 +7,7 @@ A place is that of a site, unless the model says that it is that of a bond (`bon
 import numpy as np
 
 from mesokit.method.kinetic_monte_carlo.engine.choice import keeps, put
+from mesokit.method.kinetic_monte_carlo.engine.record import change_recorded
 from mesokit.method.kinetic_monte_carlo.lattice.grid import neighbour
 from mesokit.method.kinetic_monte_carlo.model.protocol import (
     MISSING,
@@ -99,6 +100,9 @@ def change(model, sites, choice, part, i, new, j, other):
     if j >= 0:
         before = np.int64(sites.states[U(j)])
         sites.states[U(j)] = other
+    if sites.record.on:
+        change_recorded(sites.record, sites.grid, i, old, new, j, before, other)
+    if j >= 0:
         if keeps(choice):
             _change_around(model, sites, choice, part, i, old, new, j, before, other)
             _change_around(model, sites, choice, part, j, before, other, i, old, new)

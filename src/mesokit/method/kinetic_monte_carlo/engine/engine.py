@@ -22,6 +22,7 @@ from mesokit.method.kinetic_monte_carlo.engine.events import (
     numbers_of,
 )
 from mesokit.method.kinetic_monte_carlo.engine.pairs import count_pairs
+from mesokit.method.kinetic_monte_carlo.engine.record import LOST, record_of
 from mesokit.method.kinetic_monte_carlo.engine.select import (
     choice_of,
     clear,
@@ -34,13 +35,14 @@ from mesokit.method.kinetic_monte_carlo.start import kind_of
 from mesokit.processes.signals import heard
 from mesokit.seam.engine import Integers, Interrupted, State
 
+TRACERS, WAITS = "tracers", "waits"  # what observables may have recorded
 AT_ONCE = 1_000_000  # events, some tenths of a second, after which a signal is looked for
 
 
 class Events:
     """Engine of kinetic Monte Carlo (`mesokit.seam.engine.Engine`)."""
 
-    def __init__(self, case: Case, threads: int = 1) -> None:
+    def __init__(self, case: Case, threads: int = 1, measures: Collection[str] = ()) -> None:
         given = case.lattice
         size, kind = tuple(map(int, case.box.size)), given.lattice
         closed = tuple(axis in given.ends for axis in case.box.axes)
@@ -49,7 +51,12 @@ class Events:
         self.model, self.places = given.model.kernel(kind, any(closed)), by_number(grid)
         self.states = len(given.model.states())
         self.n, memory = len(self.places), length_of(grid)
-        self.lattice = Sites(grid, np.zeros(memory, kind_of(case)), np.zeros(memory, np.uint16))
+        self._kind = kind
+        record = record_of(
+            memory, len(size), self.states, TRACERS in measures, WAITS in measures
+        )
+        states, around = np.zeros(memory, kind_of(case)), np.zeros(memory, np.uint16)
+        self.lattice = Sites(grid, states, around, record)
         self._shape = len(given.model.events()), kind.neighbours + 1
         number, seed = int(np.prod(self._shape)), np.uint64(case.run.seed)
         self.course = Course(
@@ -98,6 +105,18 @@ class Events:
         # rates follow from the states: as if no site had ever had another
         clear(self.choice)
         begin(*self._arguments())
+        self._tag()
+
+    def _tag(self) -> None:
+        """Begin to record: each particle has come no way, each site has just taken its state."""
+        record = self.lattice.record
+        if len(record.tags):
+            record.tags.fill(LOST)
+            record.tags[self.places] = np.arange(self.n)
+            record.moved.fill(0)
+        record.since.fill(self.time)
+        record.waits.fill(0)
+        record.sums.fill(0.0)
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps: slices of time. Raises Interrupted on a signal."""
@@ -144,6 +163,7 @@ class Events:
         self.course.happened.fill(0)
         if self.blocks is not None:
             self.blocks.happened.fill(0)
+        self._tag()
 
     def sites(self, ids: Integers | None = None) -> NDArray[np.integer]:
         """States (n,) of all sites, or of some, by number."""
@@ -164,6 +184,26 @@ class Events:
             found += self.blocks.happened.reshape(self.threads.size, -1).sum(axis=0)
         return found.reshape(self._shape)
 
+    def tracers(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """How far the particle that was at each site after the warm-up has come since (n, d), in
+        distances of neighbours; and whether it is still there (n,)."""
+        grid, record, kind = self.lattice.grid, self.lattice.record, self._kind
+        d = len(self.size)
+        moved = record.moved.reshape(-1, d)[: self.n]
+        first = np.moveaxis(np.indices(grid.size), 0, -1).reshape(-1, d)
+        odd = [(r @ np.array(kind.parity)) % 2 for r in (first, first + moved)]
+        shifts = (odd[1] - odd[0])[:, None] * np.array(kind.shift)
+        there = record.tags[self.places]
+        kept = np.zeros(self.n, bool)
+        kept[there[there >= 0]] = True
+        return moved * np.array(kind.spacing) + shifts, kept
+
+    def waits(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """How many sites have left each state after times in each bin (states, bins), and the sums
+        of these times and of their squares (states, 2)."""
+        record = self.lattice.record
+        return record.waits.reshape(self.states, -1), record.sums.reshape(self.states, 2)
+
     def state(self) -> State:
         """States by number of the site, the clock, the events so far and the order of lists."""
         course = self.course
@@ -175,7 +215,19 @@ class Events:
             "happened": self.happened(),
             "step": np.array(self.step),
             **order_of(self.choice),
+            **self._recorded(),
         }
+
+    def _recorded(self) -> State:
+        record = self.lattice.record
+        state: State = {}
+        if len(record.tags):
+            moved = record.moved[: self.n * len(self.size)]
+            state |= {"tags": record.tags[self.places], "moved": moved}
+        if len(record.since):
+            since = record.since[self.places]
+            state |= {"since": since, "waits": record.waits, "sums": record.sums}
+        return state
 
     def restore(self, state: State) -> None:
         """Go on from a state."""
@@ -189,3 +241,10 @@ class Events:
         order = {name: np.array(state[name]) for name in order_of(self.choice)}
         self.start(state["states"])
         set_order(self.choice, order)
+        record = self.lattice.record
+        if len(record.tags):
+            record.tags[self.places] = state["tags"]
+            record.moved[: len(state["moved"])] = state["moved"]
+        if len(record.since):
+            record.since[self.places] = state["since"]
+            record.waits[:], record.sums[:] = state["waits"], state["sums"]

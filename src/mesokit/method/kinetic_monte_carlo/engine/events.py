@@ -150,6 +150,7 @@ def events(model, sites, choice, course, until, most):
         around = known(model, sites, i) if keeps(choice) else found(model, sites, i)
         happens = chance(choice, around)
         if left < happens:
+            sites.record.now[0] = now
             process, direction = happen(model, sites, choice, 0, i, left / happens)
             column = direction if direction >= 0 else none
             course.happened[U(process * (none + 1) + column)] += 1

@@ -123,11 +123,12 @@ def neighbour(grid, i, direction):
 
 class Sites(NamedTuple):
     """A lattice, and of each place in memory (n,) the state of the site there and the number of its
-    surroundings (see `model/protocol.py`)."""
+    surroundings (see `model/protocol.py`); and what else is recorded of it (`engine/record.py`)."""
 
     grid: Grid
     states: NDArray[np.integer]
     around: NDArray[np.uint16]
+    record: Any
 
 
 @scalar
