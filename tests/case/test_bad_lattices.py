@@ -57,6 +57,33 @@ RANDOM = '{ rule = "random" }'
 BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "misspelt method": ({'"kinetic-monte-carlo"': '"kinetic-montecarlo"'}, ("run.method",)),
     "section of another method": ({"[lattice.model]": "[fluid]\n[lattice.model]"}, ("fluid",)),
+    "misspelt choice": (
+        {'kind = "square"': 'select = "class"'},
+        ("lattice.select", "'class'", "'classes'"),
+    ),
+    "attempts in sublattices": (
+        {
+            'kind = "square"': 'select = "attempts"\nsublattices = { block = 32 }',
+            "size = [12, 10]": "size = [64, 64]",
+        },
+        ("lattice.select", "'attempts'", "lattice.sublattices"),
+    ),
+    "block of no tiles": (
+        {'kind = "square"': "sublattices = { block = 20 }", "size = [12, 10]": "size = [40, 40]"},
+        ("lattice.sublattices.block = 20", "multiple of 32"),
+    ),
+    "lattice of no blocks": (
+        {'kind = "square"': "sublattices = { block = 32 }"},
+        ("box.size = [12, 10]", "multiples of lattice.sublattices.block = 32"),
+    ),
+    "negative cycle": (
+        {'kind = "square"': "sublattices = { cycle = -1.0 }"},
+        ("lattice.sublattices.cycle = -1", "above 0"),
+    ),
+    "misspelt moves": (
+        {"kT = 2.0": 'kT = 2.0\nmoves = "swap"'},
+        ("lattice.model.moves", "'swap'", "'exchange'"),
+    ),
     "misspelt key": ({"timestep": "time_step"}, ("lattice.time_step", "'timestep'")),
     "misspelt kind": ({'"square"': '"squared"'}, ("lattice.kind", "'square'")),
     "no time": ({"timestep = 0.5": "timestep = 0"}, ("lattice.timestep = 0", "above 0")),

@@ -118,7 +118,9 @@ LATTICES = {2: KINDS["square"], 3: KINDS["cubic"]}
 def sites(d: int) -> Sites:
     """A small lattice."""
     grid = grid_of(LATTICES[d], (4,) * d, (False,) * d)
-    return Sites(grid, np.zeros(length_of(grid), np.uint8), np.zeros(length_of(grid), np.uint16), ())
+    return Sites(
+        grid, np.zeros(length_of(grid), np.uint8), np.zeros(length_of(grid), np.uint16), ()
+    )
 
 
 # Of each generic function: the arguments after the first, which is p, in d dimensions.

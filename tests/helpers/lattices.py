@@ -16,6 +16,6 @@ def lattice_case(size, model, kind="square", steps=0, seed=1, warmup=0, observe=
     )
 
 
-def lattice_engine(*size_and_model: Any, **given: Any) -> Any:
+def lattice_engine(*size_and_model: Any, threads: int = 1, **given: Any) -> Any:
     """The engine of such a case, in its first state."""
-    return Simulation(lattice_case(*size_and_model, **given)).engine
+    return Simulation(lattice_case(*size_and_model, **given), threads=threads).engine

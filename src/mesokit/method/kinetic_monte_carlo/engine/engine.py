@@ -52,9 +52,7 @@ class Events:
         self.states = len(given.model.states())
         self.n, memory = len(self.places), length_of(grid)
         self._kind = kind
-        record = record_of(
-            memory, len(size), self.states, TRACERS in measures, WAITS in measures
-        )
+        record = record_of(memory, len(size), self.states, TRACERS in measures, WAITS in measures)
         states, around = np.zeros(memory, kind_of(case)), np.zeros(memory, np.uint16)
         self.lattice = Sites(grid, states, around, record)
         self._shape = len(given.model.events()), kind.neighbours + 1

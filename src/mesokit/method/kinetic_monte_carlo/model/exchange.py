@@ -20,7 +20,7 @@ from mesokit.method.kinetic_monte_carlo.model.protocol import (
 )
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, Rates, Table, rates_of
 
-MOST = 2**8  # kinds of surroundings of a site: of two sites there are as many squared
+MOST = 2**10  # kinds of surroundings of a site: of two sites there are as many squared
 NAME = "exchange"
 
 
@@ -41,7 +41,9 @@ for _function in (number_alone, weight, change_of_weight, change_of_own):
     _function.register(Exchanges)(_function.implementation(Table))
 
 
-def exchanges(energies: Energies, rate: Callable[[float], float], kind: Kind, ends: bool) -> Exchanges:
+def exchanges(
+    energies: Energies, rate: Callable[[float], float], kind: Kind, ends: bool
+) -> Exchanges:
     """All exchanges of unlike neighbours, at the rate that the change of energy gives."""
     states = len(energies.site)
     known: list[tuple[int, Counts]] = []  # state and numbers of neighbours in each state
@@ -63,17 +65,39 @@ def exchanges(energies: Energies, rate: Callable[[float], float], kind: Kind, en
             "for exchanges"
         )
     rates = np.zeros((numbers, numbers))
-    there = [(k, *known[int(which) - 1]) for k, which in enumerate(of.rates) if which > 0]
-    for (k, a, around), (m, b, other) in itertools.product(there, repeat=2):
-        # each is among the neighbours of the other, before and after
-        if a != b and around[b] > 0 and other[a] > 0:
-            change = _of_pair(energies, around, a, b) + _of_pair(energies, other, b, a)
-            rates[k, m] = rate(change)
+    for a, b in itertools.permutations(range(states), 2):
+        one, around = _beside(of, known, a, b)
+        two, other = _beside(of, known, b, a)
+        changes = _of_site(energies, around, a, b)[:, None] + _of_site(energies, other, b, a)
+        different, which = np.unique(changes, return_inverse=True)
+        rates[np.ix_(one, two)] = np.array([rate(float(c)) for c in different])[which].reshape(
+            changes.shape
+        )
     return Exchanges(states, of._replace(rates=of.rates[:0]), numbers, rates.ravel())
 
 
-def _of_pair(energies: Energies, around: Sequence[int], old: int, new: int) -> float:
-    """What the energy with all neighbours but the other one changes by."""
-    pairs = np.array(around[: len(energies.site)], float)
-    pairs[new] -= 1
-    return float(pairs @ (energies.pair[new] - energies.pair[old]))
+def _beside(
+    of: Rates, known: Sequence[tuple[int, Counts]], state: int, other: int
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Surroundings of sites in a state with a neighbour in another, and the numbers of neighbours
+    in each state but for that one: (m,) and (m, states)."""
+    found = [
+        (k, counts)
+        for k, which in enumerate(of.rates)
+        if which > 0 and known[int(which) - 1][0] == state
+        for counts in [np.array(known[int(which) - 1][1][:-1], float)]
+        if counts[other] > 0
+    ]
+    numbers = np.array([k for k, _ in found], np.int64)
+    rest = np.array([counts for _, counts in found]).reshape(len(found), -1)
+    rest[:, other] -= 1
+    return numbers, rest
+
+
+def _of_site(
+    energies: Energies, rest: NDArray[np.float64], old: int, new: int
+) -> NDArray[np.float64]:
+    """What the energy of a site with these neighbours changes by when its state changes."""
+    scale = float(np.abs(energies.pair).max()) or 1.0
+    # rounded, since sums in another order would make other rates
+    return scale * np.round(rest @ (energies.pair[new] - energies.pair[old]) / scale, 12)
