@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
 from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.case import Case
-from mesokit.case.component import name_of
+from mesokit.case.component import name_of, show
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
-FAN = 16
+from mesokit.method.kinetic_monte_carlo.expected import known_mean
 from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE
-from mesokit.method.kinetic_monte_carlo.start import RunStart, sites_of
+from mesokit.method.kinetic_monte_carlo.model.balance import detailed_balance
+from mesokit.method.kinetic_monte_carlo.model.first_rates import first_rate
+from mesokit.method.kinetic_monte_carlo.start import RandomStart, UniformStart, sites_of
 from mesokit.seam.method import Row, Summary
 
+FAN = 16  # tiles in a list
 SECONDS = 0.2e-6  # of a thread for an event, where the project measures (docs/benchmark.md)
 LONGEST = 1e10  # seconds: longer ones are not told apart
 EQUILIBRIUM = ("lattice-energy", "magnetisation")  # what theory expects in it alone
+LENGTHS = 6  # correlation lengths that a box should have along each axis
 BYTES = 4  # of memory for each site: its state, its surroundings and its class
 
 
@@ -29,8 +34,14 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     table = given.model.kernel(given.lattice, bool(given.ends))
     distinct = np.unique(table.rates[table.rates > 0])
     # how many events there will be depends on the states: at most these, were all sites the fastest
-    most = float(distinct.max()) * sites * steps * given.timestep
-    seconds = most * SECONDS
+    time = steps * given.timestep
+    most = float(distinct.max()) * sites * time
+    total = first_rate(case)
+    usual, note = (total or 0.0) * time, "were all sites the fastest"
+    if total:
+        note = f"as frequent as at the start; {note}"
+    shortest, longest = (duration_text(min(events * SECONDS, LONGEST)) for events in (usual, most))
+    seconds = (usual if total else most) * SECONDS
     nodes = -(-sites // (TILE * FAN)) * FAN
     memory = sites * (BYTES + 8) + 5 * nodes * len(distinct) + 150_000_000
     stored = stored_bytes(case.trajectory, case.groups, case.box.dimension, case.run.steps)
@@ -39,15 +50,33 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         ("model", name_of(given.model), f"{len(given.model.events())} processes"),
         ("rates of a site", f"{len(distinct)}", f"{number(distinct.min())} to "
          f"{number(distinct.max(), '1/time')}: chosen by classes"),
-        ("time of the run", number(steps * given.timestep, "time"), f"{steps} slices"),
-        ("events", f"< {number(most)}", "were all sites the fastest"),
-        ("run time", f"< {duration_text(min(seconds, LONGEST))}", "estimate: 1 thread"),
+        *given.model.derived(case),
+        *_rows(case, total),
+        ("time of the run", number(time, "time"), f"{steps} slices"),
+        ("events", f"{number(usual)} to {number(most)}" if total else f"< {number(most)}", note),
+        ("run time", f"{shortest} to {longest}" if total else f"< {longest}", "estimate: 1 thread"),
         ("memory", size_text(memory), "estimate"),
     ]  # fmt: skip
     if stored:
         rows.append(("trajectory", size_text(stored), "estimate"))
     warnings = [*run_warnings(case, memory, stored), *_warnings(case, float(distinct.max()))]
     return Summary(tuple(rows), tuple(warnings), seconds, {"sites": sites}, memory)
+
+
+def _rows(case: Case, total: float | None) -> Iterator[Row]:
+    """Rows on the first state, on equilibrium and on correlations, where these are known."""
+    if total:
+        note = f"at the start: the first comes after {number(1 / total, 'time')} on average"
+        yield "rate of all events", number(total, "1/time"), note
+    elif total == 0:
+        yield "rate of all events", "0", "at the start: nothing happens"
+    broken = detailed_balance(case)
+    if broken is not None:
+        note = f"broken by process {broken}: there is no equilibrium" if broken else "with energies"
+        yield "detailed balance", "broken" if broken else "holds", note
+    length, note = known_mean(case, "correlation length")
+    if not math.isnan(length):
+        yield "correlation length", number(length, "sites"), note
 
 
 def table_neighbours(case: Case) -> str:
@@ -62,8 +91,18 @@ def _warnings(case: Case, fastest: float) -> Iterator[str]:
             f"lattice.timestep: at most {per_slice:.2g} events in a step on average; "
             "a longer timestep costs less"
         )
+    length, _ = known_mean(case, "correlation length")
+    if length == math.inf:
+        yield "lattice.model.kT: at the critical point all means depend on the size of the lattice"
+    elif LENGTHS * length > min(case.box.size):
+        yield (
+            f"box.size = {show(list(case.box.size))}: spins are correlated over {number(length)} "
+            f"sites; expected at least {LENGTHS} times as many along each axis"
+        )
     waits = [one.label for one in case.observe if name_of(one) in EQUILIBRIUM]
-    if case.run.warmup == 0 and waits and not isinstance(case.lattice.first(), RunStart):
+    # other starts are patterns or states that somebody has made, whose course is of interest
+    drawn = isinstance(case.lattice.first(), RandomStart | UniformStart)
+    if case.run.warmup == 0 and waits and drawn:
         yield (
             f"run.warmup = 0: equilibrium takes time, and means of {waits[0]} count from the first "
             "step"

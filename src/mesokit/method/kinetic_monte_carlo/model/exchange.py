@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.lattice.patch import Patch
 from mesokit.method.kinetic_monte_carlo.model.protocol import (
     Energies,
+    Move,
+    Moves,
     change_of_own,
     change_of_weight,
     number_alone,
@@ -41,7 +44,9 @@ for _function in (number_alone, weight, change_of_weight, change_of_own):
     _function.register(Exchanges)(_function.implementation(Table))
 
 
-def exchanges(energies: Energies, rate: Callable[[float], float], kind: Kind, ends: bool) -> Exchanges:
+def exchanges(
+    energies: Energies, rate: Callable[[float], float], kind: Kind, ends: bool
+) -> Exchanges:
     """All exchanges of unlike neighbours, at the rate that the change of energy gives."""
     states = len(energies.site)
     known: list[tuple[int, Counts]] = []  # state and numbers of neighbours in each state
@@ -70,6 +75,25 @@ def exchanges(energies: Energies, rate: Callable[[float], float], kind: Kind, en
             change = _of_pair(energies, around, a, b) + _of_pair(energies, other, b, a)
             rates[k, m] = rate(change)
     return Exchanges(states, of._replace(rates=of.rates[:0]), numbers, rates.ravel())
+
+
+def exchange_moves(energies: Energies, rate: Callable[[float], float]) -> Moves:
+    """The same in plain Python: each pair of neighbours once, from the site that comes first."""
+    states = len(energies.site)
+
+    def counts(patch: Patch, i: int) -> list[int]:
+        around = patch.around(i, states)
+        return [around.count(state) for state in range(states)]
+
+    def at(patch: Patch, i: int) -> Iterator[Move]:
+        for j in patch.near[i]:
+            a, b = patch.states[i], patch.states[j]
+            if j > i and a != b:
+                change = _of_pair(energies, counts(patch, i), a, b)
+                change += _of_pair(energies, counts(patch, j), b, a)
+                yield Move(NAME, rate(change), ((i, b), (j, a)))
+
+    return Moves(at, reach=2)
 
 
 def _of_pair(energies: Energies, around: Sequence[int], old: int, new: int) -> float:
