@@ -59,10 +59,7 @@ class RandomStart(LatticeStart):
 
     @model_validator(mode="after")
     def _sum(self) -> RandomStart:
-        if self.fractions and (min(self.fractions) < 0 or abs(sum(self.fractions) - 1) > 1e-9):
-            raise ValueError(
-                f"fractions = {show(list(self.fractions))}: expected numbers from 0 with the sum 1"
-            )
+        _parts_of_one(self.fractions)
         return self
 
     def states(self, case: Case) -> States:
@@ -168,6 +165,11 @@ class NucleusStart(LatticeStart):
         (), doc="of the other sites in each state, with the sum 1 (all in the first unless said)"
     )
 
+    @model_validator(mode="after")
+    def _sum(self) -> NucleusStart:
+        _parts_of_one(self.fractions)
+        return self
+
     def states(self, case: Case) -> States:
         names, size = case.lattice.model.states(), tuple(map(int, case.box.size))
         if not names:
@@ -254,6 +256,14 @@ class RunStart(LatticeStart):
         except (OSError, MesokitError) as error:
             raise CaseError(f"{key}: {error}") from None
         return checked(case, key, state["states"])
+
+
+def _parts_of_one(fractions: tuple[float, ...]) -> None:
+    """Raise ValueError unless fractions are none, or numbers from 0 with the sum 1."""
+    if fractions and (min(fractions) < 0 or abs(sum(fractions) - 1) > 1e-9):
+        raise ValueError(
+            f"fractions = {show(list(fractions))}: expected numbers from 0 with the sum 1"
+        )
 
 
 def kind_of(case: Case) -> type[np.integer]:
