@@ -20,7 +20,6 @@ from mesokit.method.kinetic_monte_carlo.observe.coverage import Coverage
 from mesokit.method.kinetic_monte_carlo.observe.event_rates import EventRates
 from mesokit.method.kinetic_monte_carlo.observe.lattice_energy import LatticeEnergy
 from mesokit.method.kinetic_monte_carlo.start import (
-    DropletStart,
     GrainsStart,
     NucleusStart,
     UniformStart,
@@ -51,8 +50,7 @@ def test_a_lone_adatom_diffuses_with_its_rate():
     """The mean square of its displacement along an axis is 2 D t, with D = rate a^2."""
     rate, wait, steps = 2.0 * math.exp(-1.5), 1.0, 40_000
     model = SurfaceDiffusion(attempt_rate=2.0, substrate_energy=0.75, kT=0.5)
-    engine = lattice_engine((16, 16), model, timestep=wait, start=DropletStart(radius=0.8))
-    engine.start(np.eye(1, 256, 100, dtype=int)[0])
+    engine = lattice_engine((16, 16), model, timestep=wait, start=NucleusStart())
     passed = np.zeros((steps, 4))
     for step in range(steps):
         engine.advance(1)
@@ -70,8 +68,9 @@ def test_hops_of_adatoms_follow_arrhenius():
     energy, found, kT = 0.5, [], np.array([0.05, 0.0625, 0.1])
     for one in kT:
         model = SurfaceDiffusion(attempt_rate=1e6, substrate_energy=energy, kT=one)
-        engine = lattice_engine((16, 16), model, timestep=2e5 / 4e6 * math.exp(energy / one))
-        engine.start(np.eye(1, 256, 100, dtype=int)[0])
+        engine = lattice_engine(
+            (16, 16), model, timestep=2e5 / 4e6 * math.exp(energy / one), start=NucleusStart()
+        )
         engine.advance(1)
         found.append(engine.happened().sum() / (4 * engine.time))
     slope, front = np.polyfit(1 / kT, np.log(found), 1)
