@@ -77,6 +77,43 @@ def test_check_says_that_equilibrium_takes_time(tmp_path, capsys):
     assert "equilibrium takes time" not in capsys.readouterr().out
 
 
+def rows(told: str) -> dict[str, str]:
+    """Rows of `mesokit check`: what, and the rest of the line."""
+    lines = [line.split("  ", 1) for line in told.splitlines() if "  " in line]
+    return {what.strip(): rest.strip() for what, rest in lines}
+
+
+def test_check_says_what_follows_from_rates(tmp_path, capsys):
+    case = write(tmp_path, "[20, 12]", "square", '{ rule = "ising", kT = 3.0 }', '["up"]')
+    command("check", case)
+    found = rows(capsys.readouterr().out)
+    assert found["detailed balance"].startswith("holds")
+    assert found["correlation length"].startswith("2.137 sites")
+    # spins that are all up flip down: one of five rates, exp(-8/3) of 240 sites
+    start = '--set=lattice.start={ rule = "uniform", state = "up" }'
+    command("check", case, start)
+    assert rows(capsys.readouterr().out)["rate of all events"].startswith("16.68 1/time")
+    model = '--set=lattice.model={ rule = "solid-on-solid", flux = 1.0 }'
+    command("check", case, model, "--set", 'log.columns=["height"]')
+    assert "broken by process deposit" in rows(capsys.readouterr().out)["detailed balance"]
+
+
+@pytest.mark.parametrize(
+    ("kT", "warning"),
+    [
+        ("2.4", "box.size = [20, 12]: spins are correlated over 10.23"),
+        ("2.269185314213022", "at the critical point all means depend on the size"),
+    ],
+)
+def test_check_warns_of_correlations_that_are_long(kT, warning, tmp_path, capsys):
+    model = f'{{ rule = "ising", kT = {kT} }}'
+    command("check", write(tmp_path, "[20, 12]", "square", model, '["up"]'))
+    assert warning in capsys.readouterr().out
+    model = '{ rule = "ising", kT = 4.0 }'
+    command("check", write(tmp_path, "[20, 12]", "square", model, '["up"]'))
+    assert "warning" not in capsys.readouterr().out
+
+
 def test_heights_are_kept_and_a_chain_has_no_map(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     case = write(tmp_path, "[64]", "chain", '{ rule = "family" }', '["height", "width"]')

@@ -91,6 +91,7 @@ from mesokit.theory.ising import counted_spins as counted_spins
 from mesokit.theory.ising import glauber_walls as glauber_walls
 from mesokit.theory.ising import onsager_energy as onsager_energy
 from mesokit.theory.ising import potts_critical_energy as potts_critical_energy
+from mesokit.theory.ising import spin_correlation_length as spin_correlation_length
 from mesokit.theory.ising import yang_magnetisation as yang_magnetisation
 from mesokit.theory.kolmogorov import kolmogorov_onset_time as kolmogorov_onset_time
 from mesokit.theory.kolmogorov import kolmogorov_velocity as kolmogorov_velocity

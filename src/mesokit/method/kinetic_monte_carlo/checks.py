@@ -49,7 +49,10 @@ def _sublattices(case: Case) -> Iterator[str]:
     if block % side:
         yield f"lattice.sublattices.block = {block}: expected a multiple of {side}"
     if any(length % block for length in size):
-        yield f"box.size = {show(list(size))}: expected multiples of lattice.sublattices.block = {block}"
+        yield (
+            f"box.size = {show(list(size))}: expected multiples of "
+            f"lattice.sublattices.block = {block}"
+        )
     if select not in ("auto", "classes", "groups"):
         yield (
             f"lattice.select = {show(select)}: expected 'auto', 'classes' or 'groups' with "

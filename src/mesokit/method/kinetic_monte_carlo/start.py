@@ -59,10 +59,7 @@ class RandomStart(LatticeStart):
 
     @model_validator(mode="after")
     def _sum(self) -> RandomStart:
-        if self.fractions and (min(self.fractions) < 0 or abs(sum(self.fractions) - 1) > 1e-9):
-            raise ValueError(
-                f"fractions = {show(list(self.fractions))}: expected numbers from 0 with the sum 1"
-            )
+        _parts_of_one(self.fractions)
         return self
 
     def states(self, case: Case) -> States:
@@ -121,6 +118,92 @@ class DropletStart(LatticeStart):
 
 
 @component
+class GrainsStart(LatticeStart):
+    """Two grains that touch in the middle of the box: disks in a plane, balls in space."""
+
+    rule: Literal["grains"] = tag("grains")
+    radius: float = param(doc="of each, in distances of neighbours", ge=1)
+    axis: Literal["x", "y", "z"] = param("x", doc="axis from one to the other")
+    state: str | None = param(None, doc="name of the state within (the second unless said)")
+    beyond: str | None = param(None, doc="name of the state around (the first unless said)")
+
+    def states(self, case: Case) -> States:
+        axis = case.box.index(self.axis, "lattice.start.axis")
+        places = case.lattice.lattice.places(tuple(map(int, case.box.size)))
+        low, high = places.min(axis=0), places.max(axis=0)
+        needed = np.full(len(low), 2 * self.radius)
+        needed[axis] *= 2
+        if (high - low < needed - 1).any():
+            raise CaseError(
+                f"lattice.start.radius = {show(self.radius)}: two grains need "
+                f"{show(needed.tolist())} distances of neighbours; expected a larger box.size"
+            )
+        inside = np.zeros(len(places), bool)
+        for sign in (-1, 1):
+            middle = 0.5 * (low + high)
+            middle[axis] += sign * self.radius
+            inside |= ((places - middle) ** 2).sum(axis=1) <= self.radius**2
+        first = _number(case, "state", self.state, 1)
+        return np.where(inside, first, _number(case, "beyond", self.beyond, 0)).astype(
+            kind_of(case)
+        )
+
+
+@component
+class NucleusStart(LatticeStart):
+    """A cluster to grow from: one site in the middle, or the line or plane of sites at 0.
+
+    The other sites are in the first state, or in states that are drawn.
+    """
+
+    rule: Literal["nucleus"] = tag("nucleus")
+    axis: Literal["x", "y", "z"] | None = param(
+        None, doc="axis across a line, or a plane, at 0 (one site unless said)"
+    )
+    state: str | None = param(None, doc="name of its state (the last unless said)")
+    fractions: Many[float] = param(
+        (), doc="of the other sites in each state, with the sum 1 (all in the first unless said)"
+    )
+
+    @model_validator(mode="after")
+    def _sum(self) -> NucleusStart:
+        _parts_of_one(self.fractions)
+        return self
+
+    def states(self, case: Case) -> States:
+        names, size = case.lattice.model.states(), tuple(map(int, case.box.size))
+        if not names:
+            raise CaseError("lattice.start.rule = 'nucleus': not for heights; expected 'terrace'")
+        first = (1.0, *(0.0 for _ in names[1:]))
+        around = RandomStart(fractions=self.fractions or first).states(case)
+        found = around.reshape(size)
+        state = _number(case, "state", self.state, len(names) - 1)
+        if self.axis is None:
+            found[tuple(length // 2 for length in size)] = state
+        else:
+            axis = case.box.index(self.axis, "lattice.start.axis")
+            np.moveaxis(found, axis, 0)[0] = state
+        return around
+
+
+@component
+class TerraceStart(LatticeStart):
+    """Two terraces: columns up to a part of the length along an axis are higher than the others."""
+
+    rule: Literal["terrace"] = tag("terrace")
+    height: int = param(1, doc="of the step, in atoms", ge=1, le=10**6)
+    axis: Literal["x", "y", "z"] = param("x", doc="axis across it")
+    part: float = param(0.5, doc="length of the high columns over that of the box", gt=0, lt=1)
+
+    def states(self, case: Case) -> States:
+        if case.lattice.model.states():
+            raise CaseError("lattice.start.rule = 'terrace': of heights; expected 'slab'")
+        axis, size = case.box.index(self.axis, "lattice.start.axis"), case.box.size
+        before = np.indices(size)[axis].ravel() < round(self.part * size[axis])
+        return np.where(before, self.height, 0).astype(kind_of(case))
+
+
+@component
 class AlternatingStart(LatticeStart):
     """Neighbours in two states, in turn: heights 0 and 1 of the single-step model."""
 
@@ -173,6 +256,14 @@ class RunStart(LatticeStart):
         except (OSError, MesokitError) as error:
             raise CaseError(f"{key}: {error}") from None
         return checked(case, key, state["states"])
+
+
+def _parts_of_one(fractions: tuple[float, ...]) -> None:
+    """Raise ValueError unless fractions are none, or numbers from 0 with the sum 1."""
+    if fractions and (min(fractions) < 0 or abs(sum(fractions) - 1) > 1e-9):
+        raise ValueError(
+            f"fractions = {show(list(fractions))}: expected numbers from 0 with the sum 1"
+        )
 
 
 def kind_of(case: Case) -> type[np.integer]:

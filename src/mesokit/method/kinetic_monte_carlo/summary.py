@@ -9,12 +9,15 @@ import numpy as np
 
 from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.case import Case
-from mesokit.case.component import name_of
+from mesokit.case.component import name_of, show
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.method.kinetic_monte_carlo.engine.select import selected
+from mesokit.method.kinetic_monte_carlo.expected import known_mean
 from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE
-from mesokit.method.kinetic_monte_carlo.start import RunStart, sites_of
+from mesokit.method.kinetic_monte_carlo.model.balance import detailed_balance
+from mesokit.method.kinetic_monte_carlo.model.first_rates import first_rate
+from mesokit.method.kinetic_monte_carlo.start import RandomStart, UniformStart, sites_of
 from mesokit.seam.method import Row, Summary
 
 # of a thread for an event, or an attempt, where the project measures (docs/benchmark.md)
@@ -34,6 +37,7 @@ WORDS = {
 }
 LONGEST = 1e10  # seconds: longer ones are not told apart
 EQUILIBRIUM = ("lattice-energy", "magnetisation")  # what theory expects in it alone
+LENGTHS = 6  # correlation lengths that a box should have along each axis
 BYTES = 4  # of memory for each site: its state, its surroundings and its class
 
 
@@ -44,11 +48,19 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     table = given.model.kernel(given.lattice, bool(given.ends))
     distinct = np.unique(table.rates[table.rates > 0])
     # how many events there will be depends on the states: at most these, were all sites the fastest
-    most = float(distinct.max()) * sites * steps * given.timestep
+    time = steps * given.timestep
+    most = float(distinct.max()) * sites * time
+    total = first_rate(case)
+    usual, note = (total or 0.0) * time, "were all sites the fastest"
+    if total:
+        note = f"as frequent as at the start; {note}"
     select = selected(given.select, table.rates)
     each = SECONDS[select] * (sites if select == "linear" else 1)
     at_once = 1 if given.sublattices is None else min(threads or 1, sites // blocks_of(case))
-    seconds = most * each / at_once
+    shortest, longest = (
+        duration_text(min(events * each / at_once, LONGEST)) for events in (usual, most)
+    )
+    seconds = (usual if total else most) * each / at_once
     rates = {"classes": 10 * len(distinct) / TILE, "tree": 32.0, "linear": 8.0}.get(select, 0.0)
     memory = int(sites * (BYTES + 8 + rates)) + 150_000_000
     stored = stored_bytes(case.trajectory, case.groups, case.box.dimension, case.run.steps)
@@ -58,9 +70,11 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         ("rates of a site", f"{len(distinct)}", f"{number(distinct.min())} to "
          f"{number(distinct.max(), '1/time')}"),
         ("choice of events", WORDS[select], f"{number(each, 's')} each, estimate"),
-        ("time of the run", number(steps * given.timestep, "time"), f"{steps} slices"),
-        ("events", f"< {number(most)}", "were all sites the fastest"),
-        ("run time", f"< {duration_text(min(seconds, LONGEST))}", f"estimate: {at_once} thread{'s' if at_once > 1 else ''}"),
+        *given.model.derived(case),
+        *_rows(case, total),
+        ("time of the run", number(time, "time"), f"{steps} slices"),
+        ("events", f"{number(usual)} to {number(most)}" if total else f"< {number(most)}", note),
+        ("run time", f"{shortest} to {longest}" if total else f"< {longest}", threads_text(at_once)),
         ("memory", size_text(memory), "estimate"),
     ]  # fmt: skip
     if given.sublattices is not None:
@@ -75,10 +89,31 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     return Summary(tuple(rows), tuple(warnings), seconds, {"sites": sites}, memory)
 
 
+def threads_text(number: int) -> str:
+    """On how many threads a time is estimated."""
+    return f"estimate: {number} thread{'s' if number > 1 else ''}"
+
+
 def blocks_of(case: Case) -> int:
     """Sites of a block of sublattices."""
     given = case.lattice.sublattices
     return given.of(len(case.box.size)) ** len(case.box.size) if given is not None else 1
+
+
+def _rows(case: Case, total: float | None) -> Iterator[Row]:
+    """Rows on the first state, on equilibrium and on correlations, where these are known."""
+    if total:
+        note = f"at the start: the first comes after {number(1 / total, 'time')} on average"
+        yield "rate of all events", number(total, "1/time"), note
+    elif total == 0:
+        yield "rate of all events", "0", "at the start: nothing happens"
+    broken = detailed_balance(case)
+    if broken is not None:
+        note = f"broken by process {broken}: there is no equilibrium" if broken else "with energies"
+        yield "detailed balance", "broken" if broken else "holds", note
+    length, note = known_mean(case, "correlation length")
+    if not math.isnan(length):
+        yield "correlation length", number(length, "sites"), note
 
 
 def table_neighbours(case: Case) -> str:
@@ -93,8 +128,18 @@ def _warnings(case: Case, fastest: float) -> Iterator[str]:
             f"lattice.timestep: at most {per_slice:.2g} events in a step on average; "
             "a longer timestep costs less"
         )
+    length, _ = known_mean(case, "correlation length")
+    if length == math.inf:
+        yield "lattice.model.kT: at the critical point all means depend on the size of the lattice"
+    elif LENGTHS * length > min(case.box.size):
+        yield (
+            f"box.size = {show(list(case.box.size))}: spins are correlated over {number(length)} "
+            f"sites; expected at least {LENGTHS} times as many along each axis"
+        )
     waits = [one.label for one in case.observe if name_of(one) in EQUILIBRIUM]
-    if case.run.warmup == 0 and waits and not isinstance(case.lattice.first(), RunStart):
+    # other starts are patterns or states that somebody has made, whose course is of interest
+    drawn = isinstance(case.lattice.first(), RandomStart | UniformStart)
+    if case.run.warmup == 0 and waits and drawn:
         yield (
             f"run.warmup = 0: equilibrium takes time, and means of {waits[0]} count from the first "
             "step"

@@ -18,10 +18,10 @@ from mesokit.method.kinetic_monte_carlo.engine.choice import (
     put,
     total_rate,
 )
+from mesokit.method.kinetic_monte_carlo.engine.stream import unit_of
 from mesokit.method.kinetic_monte_carlo.lattice.grid import fetch_site, place
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
-from mesokit.method.kinetic_monte_carlo.engine.stream import unit_of
 
 AHEAD = 8  # attempts: when a site is fetched
 U = np.uint64

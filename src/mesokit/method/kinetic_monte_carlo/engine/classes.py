@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.scalar.bits import bits_set, equal_bytes, high_product, nth_bit
 from mesokit.method.kinetic_monte_carlo.engine.choice import (
     ANY,
     chance,
@@ -28,8 +27,9 @@ from mesokit.method.kinetic_monte_carlo.engine.choice import (
 )
 from mesokit.method.kinetic_monte_carlo.engine.stream import next_word, unit_of
 from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE, fetch_site
-from mesokit.scalar.prefetch import LINE, prefetch
+from mesokit.scalar.bits import bits_set, equal_bytes, high_product, nth_bit
 from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.prefetch import LINE, prefetch
 
 MOST = 256  # classes, as bytes have values
 EARLY, LATE = 16, 8  # events ahead, when the classes of a tile and the rest of it are fetched

@@ -74,10 +74,10 @@ def draw(numbers, seed, purpose, n, index, slot):
 class Course(NamedTuple):
     """How far a run has come.
 
-    seed. numbers: of events to come. clock: time of the last event and of the next one, each as a sum of two numbers, so that
-    it never loses short waiting times. drawn: (1,) waiting times so far. vain: (1,) attempts
-    since something happened. happened: (processes,
-    directions + 1) events of each, the last column of those without a neighbour.
+    seed. numbers: of events to come. clock: time of the last event and of the next one, each as a
+    sum of two numbers, so that it never loses short waiting times. drawn: (1,) waiting times so
+    far. vain: (1,) attempts since something happened. happened: (processes * (directions + 1),)
+    events of each, the last of each row of those without a neighbour.
     """
 
     seed: np.uint64

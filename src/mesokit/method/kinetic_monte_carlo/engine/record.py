@@ -18,10 +18,11 @@ BINS = 4 * 2048  # of waiting times: four between powers of two, as doubles have
 class Record(NamedTuple):
     """What is recorded; arrays without elements where it is not.
 
-    on: whether anything is recorded. tags: (n,) by place, the number of the particle there, or LOST. moved: (tags * d,) sites that
-    each has come along each axis. since: (n,) by place, when the site took its state. now: (1,)
-    time of the event. waits: (states * BINS,) how many sites have left each state after times in
-    each bin. sums: (states * 2,) of these times and of their squares.
+    on: whether anything is recorded. tags: (n,) by place, the number of the particle there, or
+    LOST. moved: (tags * d,) sites that each has come along each axis. since: (n,) by place, when
+    the site took its state. now: (1,) time of the event. waits: (states * BINS,) how many sites
+    have left each state after times in each bin. sums: (states * 2,) of these times and of their
+    squares.
     """
 
     on: int

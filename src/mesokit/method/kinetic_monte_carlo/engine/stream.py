@@ -1,5 +1,5 @@
-"""Further random numbers of an event, from one random word (Steele, Lea and Flood 2014, SplitMix64):
-how many an event takes is not known, and they cost less than those by counter.
+"""Further random numbers of an event, from one random word: how many it takes is not known, and they
+cost less than those by counter (Steele, Lea and Flood 2014, SplitMix64).
 """
 
 import numpy as np

@@ -1,10 +1,13 @@
 """Ballistic deposition: atoms that stick to the first one that they touch (Vold 1959)."""
 
+from collections.abc import Mapping
 from typing import Literal
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
-from mesokit.method.kinetic_monte_carlo.model.heights import BESIDE, Growth, HeightModel
+from mesokit.method.kinetic_monte_carlo.model.heights import BESIDE, KPZ, Growth, HeightModel
+from mesokit.method.kinetic_monte_carlo.model.protocol import Known
 from mesokit.method.kinetic_monte_carlo.model.table import Process
 
 
@@ -22,3 +25,7 @@ class Ballistic(HeightModel):
     def growth(self, kind: Kind) -> list[Growth]:
         """Deposition anywhere, up to the top of the highest column beside."""
         return [Growth(Process("deposit", (0, 0), self.flux), 1, stays=BESIDE)]
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """The exponent of Kardar, Parisi and Zhang on a chain."""
+        return {"growth exponent": KPZ} if case.lattice.kind == "chain" else {}

@@ -1,9 +1,9 @@
-"""Exchange of the states of two neighbours, which keeps how many sites have each (Kawasaki 1966)."""
+"""Exchange of the states of two neighbours, which keeps the number of each (Kawasaki 1966)."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.lattice.patch import Patch
 from mesokit.method.kinetic_monte_carlo.model.protocol import (
     Energies,
+    Move,
+    Moves,
     change_of_own,
     change_of_weight,
     number_alone,
@@ -101,3 +104,29 @@ def _of_site(
     scale = float(np.abs(energies.pair).max()) or 1.0
     # rounded, since sums in another order would make other rates
     return scale * np.round(rest @ (energies.pair[new] - energies.pair[old]) / scale, 12)
+
+
+def exchange_moves(energies: Energies, rate: Callable[[float], float]) -> Moves:
+    """The same in plain Python: each pair of neighbours once, from the site that comes first."""
+    states = len(energies.site)
+
+    def counts(patch: Patch, i: int) -> list[int]:
+        around = patch.around(i, states)
+        return [around.count(state) for state in range(states)]
+
+    def at(patch: Patch, i: int) -> Iterator[Move]:
+        for j in patch.near[i]:
+            a, b = patch.states[i], patch.states[j]
+            if j > i and a != b:
+                change = _of_pair(energies, counts(patch, i), a, b)
+                change += _of_pair(energies, counts(patch, j), b, a)
+                yield Move(NAME, rate(change), ((i, b), (j, a)))
+
+    return Moves(at, reach=2)
+
+
+def _of_pair(energies: Energies, around: Sequence[int], old: int, new: int) -> float:
+    """What the energy with all neighbours but the other one changes by."""
+    pairs = np.array(around[: len(energies.site)], float)
+    pairs[new] -= 1
+    return float(pairs @ (energies.pair[new] - energies.pair[old]))

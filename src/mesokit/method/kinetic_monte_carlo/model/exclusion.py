@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal
 
+from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
+from mesokit.method.kinetic_monte_carlo.model.protocol import Known
 from mesokit.method.kinetic_monte_carlo.model.table import Process, TableModel
+from mesokit.method.kinetic_monte_carlo.start import sites_of
 
 EMPTY, FULL, OUTSIDE = 0, 1, 2
 FORWARD, BACKWARD = (0,), (1,)  # directions along x
@@ -65,3 +69,18 @@ class Exclusion(TableModel):
             Process("leave first", (FULL, EMPTY), self.leave_first, (), out, BACKWARD),
         ]
         return [one for one in every if one.rate]
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """The exact current of a chain that is totally asymmetric and open at both ends."""
+        driven = self.forward > 0 and not (self.backward or self.enter_last or self.leave_first)
+        if not (driven and case.lattice.ends and self.enter > 0 and self.leave > 0):
+            return {}
+        sites, note = sites_of(case), "Derrida et al. 1993"
+        current = self.forward * theory.open_current(
+            sites, self.enter / self.forward, self.leave / self.forward
+        )
+        return {
+            "rate of enter": (current / sites, note),
+            "rate of leave": (current / sites, note),
+            "rate of forward": (current * (sites - 1) / sites, note),
+        }

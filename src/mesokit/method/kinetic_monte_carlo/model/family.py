@@ -1,10 +1,13 @@
 """Deposition with relaxation: atoms that roll to the lowest column beside (Family 1986)."""
 
+from collections.abc import Mapping
 from typing import Literal
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.model.heights import LOWEST, Growth, HeightModel
+from mesokit.method.kinetic_monte_carlo.model.protocol import Known
 from mesokit.method.kinetic_monte_carlo.model.table import Process
 
 
@@ -22,3 +25,8 @@ class Family(HeightModel):
     def growth(self, kind: Kind) -> list[Growth]:
         """Deposition anywhere, and a step down."""
         return [Growth(Process("deposit", (0, 0), self.flux), 1, stays=LOWEST)]
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """The exponent of Edwards and Wilkinson on a chain."""
+        known = 0.25, "approximate: Edwards and Wilkinson, at late times"
+        return {"growth exponent": known} if case.lattice.kind == "chain" else {}

@@ -5,7 +5,9 @@ All that counts of a neighbour is how much higher or lower its column is, up to 
 
 from __future__ import annotations
 
+import functools
 from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,10 +16,14 @@ from numpy.typing import NDArray
 from mesokit.case.component import component
 from mesokit.method.kinetic_monte_carlo.lattice.grid import neighbour
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS, Kind
+from mesokit.method.kinetic_monte_carlo.lattice.patch import Patch
 from mesokit.method.kinetic_monte_carlo.model.protocol import (
     MISSING,
     UNLIKE,
+    Known,
     Model,
+    Move,
+    Moves,
     change_of_own,
     change_of_weight,
     number_alone,
@@ -40,6 +46,8 @@ AT_LEAST_AS_HIGH, ANY = (LEVEL, *HIGHER), tuple(range(2 * FAR + 1))
 # where an atom that comes down stays: at its site, at the lowest of the site and its neighbours, or
 # where it first touches the column or one beside it
 HERE, LOWEST, BESIDE = 0, 1, 2
+# growth exponent of a driven surface on a chain
+KPZ: Known = (1 / 3, "approximate: Kardar, Parisi and Zhang, at late times")
 U = np.uint64
 
 
@@ -82,6 +90,31 @@ class HeightModel(Model, ABC):
     def events(self) -> list[str]:
         """Names of the processes."""
         return [one.process.name for one in self.growth(KINDS["square"])]
+
+    def list_moves(self, kind: Kind) -> Moves | None:
+        """Growth at a site; None where it depends on more than the site that is chosen."""
+        found = self.growth(kind)
+        if any(one.stays != HERE for one in found):
+            return None
+        return Moves(functools.partial(growth_moves, found))
+
+
+def growth_moves(found: Sequence[Growth], patch: Patch, i: int) -> Iterator[Move]:
+    """What may happen to a column of a patch."""
+    height, missing = patch.states[i], 2 * FAR + 1
+    heights = patch.around(i, height)
+    around = [
+        missing if j < 0 else min(max(other - height, -FAR), FAR) + FAR
+        for j, other in zip(patch.near[i], heights, strict=True)
+    ]
+    for one in found:
+        process, new = one.process, (i, height + one.site)
+        rate = process.rate_at(around, missing)
+        if rate > 0 and process.neighbour is None:
+            yield Move(process.name, rate, (new,))
+        for k, there in enumerate(around if rate > 0 else ()):
+            if there != missing and process.takes(k, there):
+                yield Move(process.name, rate, (new, (patch.near[i][k], heights[k] + one.beside)))
 
 
 class Heights(NamedTuple):

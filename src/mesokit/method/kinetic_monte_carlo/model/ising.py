@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Literal
 
 import numpy as np
 
+from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
+from mesokit.method.kinetic_monte_carlo.lattice.grid import by_number, grid_of, neighbour
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.model.exchange import NAME as EXCHANGE
-from mesokit.method.kinetic_monte_carlo.model.exchange import exchanges
-from mesokit.method.kinetic_monte_carlo.model.protocol import Energies
+from mesokit.method.kinetic_monte_carlo.model.exchange import exchange_moves, exchanges
+from mesokit.method.kinetic_monte_carlo.model.protocol import Energies, Known, Moves
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
+from mesokit.method.kinetic_monte_carlo.start import sites_of
 
 DOWN, UP = 0, 1
+FEW = 16  # spins, of which all states are counted
 
 
 @component
@@ -45,13 +51,17 @@ class Ising(TableModel):
     def kernel(self, kind: Kind, ends: bool) -> Any:
         """The table of what may happen."""
         if self.moves == "exchange":
-            return exchanges(
-                self.energies(),
-                lambda change: self.attempt_rate * acceptance(self.dynamics, change, self.kT),
-                kind,
-                ends,
-            )
+            return exchanges(self.energies(), self._accepted, kind, ends)
         return super().kernel(kind, ends)
+
+    def list_moves(self, kind: Kind) -> Moves | None:
+        """What may happen, in plain Python."""
+        if self.moves == "exchange":
+            return exchange_moves(self.energies(), self._accepted)
+        return super().list_moves(kind)
+
+    def _accepted(self, change: float) -> float:
+        return self.attempt_rate * acceptance(self.dynamics, change, self.kT)
 
     def events(self) -> list[str]:
         """Names of what may happen."""
@@ -70,13 +80,45 @@ class Ising(TableModel):
         def rate(counts: Counts) -> float:
             around = counts[UP] - counts[DOWN]
             change = 2.0 * spin * (self.coupling * around + self.field)
-            return self.attempt_rate * acceptance(self.dynamics, change, self.kT)
+            return self._accepted(change)
 
         return rate
 
     def energies(self) -> Energies:
         spins = np.array([-1.0, 1.0])
         return Energies(-self.field * spins, -self.coupling * np.outer(spins, spins))
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """Means in equilibrium: of few spins exactly, else of a ring or an infinite square.
+
+        Spins that are exchanged keep their sum, which these theories do not.
+        """
+        if self.kT <= 0 or self.moves == "exchange":
+            return {}
+        if sites_of(case) <= FEW:
+            return {name: (value, "all states counted") for name, value in _counted(case).items()}
+        if self.field or case.lattice.ends or self.coupling <= 0:
+            return {}
+        if case.lattice.kind == "chain":
+            energy = theory.chain_energy(self.coupling, self.kT, sites_of(case))
+            reach = theory.spin_correlation_length(self.coupling, self.kT, 1)
+            return {
+                "energy": (energy, "a ring of spins"),
+                "correlation length": (reach, "an infinite chain"),
+            }
+        if case.lattice.kind != "square":
+            return {}
+        note = "an infinite lattice (Onsager 1944, Yang 1952)"
+        reach = theory.spin_correlation_length(self.coupling, self.kT, 2)
+        found = {
+            "energy": (theory.onsager_energy(self.coupling, self.kT), note),
+            "correlation length": (reach, "an infinite lattice (McCoy, Wu 1973)"),
+        }
+        ordered = theory.yang_magnetisation(self.coupling, self.kT)
+        if ordered > 0:
+            found["size"] = ordered, f"approximate: {note}"
+            found["square"] = ordered**2, f"approximate: {note}"
+        return found
 
 
 def acceptance(dynamics: str, change: float, kT: float) -> float:
@@ -90,3 +132,22 @@ def acceptance(dynamics: str, change: float, kT: float) -> float:
     if kT > 0:
         return 1.0 / (1.0 + math.exp(min(change / kT, 700.0)))
     return 0.5 if change == 0 else float(change < 0)
+
+
+@functools.lru_cache(maxsize=8)
+def _counted(case: Case) -> dict[str, float]:
+    """Exact means of a few spins."""
+    model, kind = case.lattice.model, case.lattice.lattice
+    closed = tuple(axis in case.lattice.ends for axis in case.box.axes)
+    grid = grid_of(kind, tuple(map(int, case.box.size)), closed)
+    places = by_number(grid)
+    number = {int(place): k for k, place in enumerate(places)}
+    pairs = [
+        (k, number[int(found)])
+        for k, place in enumerate(places)
+        for direction in range(kind.neighbours)
+        if (found := neighbour(grid, int(place), direction)) >= 0
+    ]
+    bonds = np.array(sorted(pairs)).reshape(-1, 2)
+    # each bond is there from both ends: half of them each
+    return theory.counted_spins(bonds, len(places), 0.5 * model.coupling, model.field, model.kT)

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import model_validator
 
 from mesokit.case.case import Case
 from mesokit.case.component import component, one_of, param, show, tag
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
+from mesokit.method.kinetic_monte_carlo.model.protocol import Energies, Known
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
 
 OUTSIDE = "outside"  # the name of what is beyond the end of a lattice
+Turn = tuple[int, int]  # states before and after
 
 
 @component
@@ -136,3 +140,86 @@ class LatticeGas(TableModel):
             return one.rate * math.exp(-(one.barrier + bonds * one.bond) / self.kT)
 
         return rate
+
+    def energies(self) -> Energies | None:
+        """That of an equilibrium, if every process has its reverse and all bonds agree.
+
+        Bonds are those before a process: a site with n bonds has the energy -n bond. Energies of
+        states follow from the ratio of the rates of each process and of its reverse.
+        """
+        found = [one for one in zip(self.process, self.processes(), strict=True) if one[0].rate]
+        pair: dict[tuple[int, int], float] = {}
+        for given, process in found:
+            if process.site[0] != process.site[1]:
+                for k, name in enumerate(self.species):
+                    bond = -given.bond if name in given.bonded else 0.0
+                    if pair.setdefault((process.site[0], k), bond) != bond:
+                        return None
+        every = range(len(self.species))
+        pairs = np.array([[pair.get((a, b), pair.get((b, a), 0.0)) for b in every] for a in every])
+        sites = self._of_states([process for _, process in found])
+        return Energies(sites, pairs) if sites is not None and (pairs == pairs.T).all() else None
+
+    def _of_states(self, processes: Sequence[Process]) -> NDArray[np.float64] | None:
+        """Energies of states; None if a process has no reverse, or if they contradict."""
+        rates: dict[tuple[Turn, ...], float] = {}
+        without_bonds = [0] * (len(self.species) + 1)
+        for one in processes:
+            rate = one.rate(without_bonds) if callable(one.rate) else one.rate
+            turns = [one.site]
+            if one.neighbour is not None:
+                turns.append((one.neighbour[0][0], one.neighbour[1]))
+                rate *= 1 + (turns[0] == turns[1])  # it may begin at both sites
+            key = tuple(sorted(turns))
+            rates[key] = rates.get(key, 0.0) + rate
+        rows, known = [], []
+        for key, rate in rates.items():
+            back = rates.get(tuple(sorted((after, before) for before, after in key)))
+            if back is None:
+                return None
+            row = np.zeros(len(self.species) + 1)
+            for before, after in key:
+                row[after] += 1
+                row[before] -= 1
+            rows.append(row[1:-1])  # the first state has none, and what is outside stays
+            known.append(-self.kT * math.log(rate / back))
+        if not rows:
+            return None
+        energies = np.linalg.lstsq(np.array(rows), np.array(known), rcond=None)[0]
+        if not np.allclose(np.array(rows) @ energies, known, rtol=1e-9, atol=1e-9 * self.kT):
+            return None
+        return np.concatenate([[0.0], energies])
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """Coverage and rates of one species that adsorbs, desorbs and hops, whatever is near."""
+        full = math.nan if case.lattice.ends else self._langmuir()
+        if math.isnan(full):
+            return {}
+        parts, z = (1 - full, full), case.lattice.lattice.neighbours
+        found = {
+            f"part {name}": (part, "Langmuir")
+            for name, part in zip(self.species, parts, strict=True)
+        }
+        for one in self.processes():
+            rate = one.rate(()) if callable(one.rate) else one.rate
+            before = parts[one.site[0]]
+            there = z * (1 - before) if one.neighbour is not None else 1.0
+            found[f"rate of {one.name}"] = rate * before * there, "Langmuir"
+        return found
+
+    def _langmuir(self) -> float:
+        """Coverage where all states with as many particles are as likely (Langmuir 1918); nan of
+        several species, and of rates that depend on neighbours."""
+        if len(self.species) != 2:
+            return math.nan
+        adsorb = desorb = 0.0
+        for one in self.processes():
+            if one.counted:
+                return math.nan
+            rate = one.rate(()) if callable(one.rate) else one.rate
+            if one.neighbour is None:
+                adsorb += rate if one.site == (0, 1) else 0.0
+                desorb += rate if one.site == (1, 0) else 0.0
+            elif {one.site, (one.neighbour[0][0], one.neighbour[1])} != {(0, 1), (1, 0)}:
+                return math.nan
+        return adsorb / (adsorb + desorb) if adsorb + desorb > 0 else math.nan

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from typing import Any, Literal
 
 import numpy as np
 
+from mesokit import theory
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.model.exchange import NAME as EXCHANGE
-from mesokit.method.kinetic_monte_carlo.model.exchange import exchanges
+from mesokit.method.kinetic_monte_carlo.model.exchange import exchange_moves, exchanges
 from mesokit.method.kinetic_monte_carlo.model.ising import acceptance
-from mesokit.method.kinetic_monte_carlo.model.protocol import Energies
+from mesokit.method.kinetic_monte_carlo.model.protocol import Energies, Known, Moves
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
+
+CRITICAL = 1e-4  # relative distance from the critical temperature that is none
 
 
 @component
@@ -40,13 +45,17 @@ class Potts(TableModel):
     def kernel(self, kind: Kind, ends: bool) -> Any:
         """The table of what may happen."""
         if self.moves == "exchange":
-            return exchanges(
-                self.energies(),
-                lambda change: self.attempt_rate * acceptance(self.dynamics, change, self.kT),
-                kind,
-                ends,
-            )
+            return exchanges(self.energies(), self._accepted, kind, ends)
         return super().kernel(kind, ends)
+
+    def list_moves(self, kind: Kind) -> Moves | None:
+        """What may happen, in plain Python."""
+        if self.moves == "exchange":
+            return exchange_moves(self.energies(), self._accepted)
+        return super().list_moves(kind)
+
+    def _accepted(self, change: float) -> float:
+        return self.attempt_rate * acceptance(self.dynamics, change, self.kT)
 
     def events(self) -> list[str]:
         """Names of what may happen."""
@@ -72,3 +81,21 @@ class Potts(TableModel):
 
     def energies(self) -> Energies:
         return Energies(np.zeros(self.q), -self.coupling * np.eye(self.q))
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """Energy of an infinite square lattice: of two states, or at the critical temperature."""
+        plain = self.moves == "turn" and not case.lattice.ends and self.coupling > 0 < self.kT
+        if not plain or case.lattice.kind != "square":
+            return {}
+        if self.q == 2:  # spins with half the coupling
+            energy = theory.onsager_energy(0.5 * self.coupling, self.kT) - self.coupling
+            reach = theory.spin_correlation_length(0.5 * self.coupling, self.kT, 2)
+            return {
+                "energy": (energy, "an infinite lattice (Onsager 1944)"),
+                "correlation length": (reach, "an infinite lattice (McCoy, Wu 1973)"),
+            }
+        critical, there = theory.potts_critical_energy(self.coupling, self.q)
+        if abs(self.kT / critical - 1) < CRITICAL:
+            note = "approximate: an infinite lattice at its critical temperature"
+            return {"energy": (there, note), "correlation length": (math.inf, note)}
+        return {}

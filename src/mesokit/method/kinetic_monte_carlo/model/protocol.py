@@ -5,7 +5,7 @@ the implementation. `sites` are `mesokit.method.kinetic_monte_carlo.lattice.grid
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,17 +15,50 @@ from mesokit.case.case import Case
 from mesokit.case.component import component
 from mesokit.case.registry import family
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.lattice.patch import Patch
 from mesokit.scalar.jit import generic
+from mesokit.seam.method import Row
+
+Known = tuple[float, str]  # a number and a note on its theory
 
 UNLIKE = -(2**40)
 MISSING = -(2**31)  # in place of the state of a neighbour, beyond the end of a lattice
 
 
 class Energies(NamedTuple):
-    """Energy of a site in each state (s,), and of two neighbours in each pair of states (s, s)."""
+    """Energy of a site in each state (s,), and of two neighbours in each pair of states (s, s).
+
+    They are in units of kT if the model has no `kT`.
+    """
 
     site: NDArray[np.float64]
     pair: NDArray[np.float64]
+
+
+class Move(NamedTuple):
+    """One thing that may happen: its name, its rate, and the sites that change to new states."""
+
+    name: str
+    rate: float
+    changes: tuple[tuple[int, int], ...]
+
+
+def over_pairs(patch: Patch, energy: Callable[[int, int], float]) -> float:
+    """Sum of the energies of all pairs of neighbours."""
+    return 0.5 * sum(  # each from both ends
+        energy(patch.states[i], patch.states[j])
+        for i, near in enumerate(patch.near)
+        for j in near
+        if j >= 0
+    )
+
+
+class Moves(NamedTuple):
+    """What may happen at a site of a patch, as a function; and how far states matter for its rates,
+    in steps from neighbour to neighbour."""
+
+    at: Callable[[Patch, int], Iterator[Move]]
+    reach: int = 1
 
 
 @family("model of a lattice", "rule", "mesokit.lattice_model")
@@ -54,6 +87,39 @@ class Model(ABC):
     def energies(self) -> Energies | None:
         """Energies of sites and of pairs of neighbours; None where there is no energy."""
         return None
+
+    def energy(self) -> Callable[[Patch], float] | None:
+        """Energy as a function of a patch; None where there is no energy."""
+        found = self.energies()
+        if found is None:
+            return None
+        site, pair = found.site.tolist(), found.pair.tolist()
+        return lambda patch: (
+            sum(site[a] for a in patch.states) + over_pairs(patch, lambda a, b: pair[a][b])
+        )
+
+    def list_moves(self, kind: Kind) -> Moves | None:
+        """All that may happen, in plain Python, for checks; None if it cannot be listed."""
+        return None
+
+    def derived(self, case: Case) -> Sequence[Row]:
+        """Rows of `mesokit check`: numbers that follow from the keys of the model."""
+        return ()
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """Means that theory predicts, by name; nothing unless a model has formulas.
+
+        "energy" and "square energy" of a site; "mean", "size", "square" and "fourth" of the mean
+        spin; "part S" of the sites in state S; "rate of P", events of process P for each site;
+        "growth exponent" of the width of a surface; "correlation length" in sites.
+        """
+        return {}
+
+    def expected_width(
+        self, case: Case, time: NDArray[np.float64], first: float
+    ) -> tuple[NDArray[np.float64] | None, str]:
+        """Width of a surface at times, and a note; `first` is the square of the first width."""
+        return None, ""
 
 
 @generic

@@ -1,10 +1,13 @@
 """Growth of restricted solids on solids: no step is higher than an atom (Kim, Kosterlitz 1989)."""
 
+from collections.abc import Mapping
 from typing import Literal
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
-from mesokit.method.kinetic_monte_carlo.model.heights import LOWER, Growth, HeightModel
+from mesokit.method.kinetic_monte_carlo.model.heights import KPZ, LOWER, Growth, HeightModel
+from mesokit.method.kinetic_monte_carlo.model.protocol import Known
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
 
 
@@ -26,3 +29,7 @@ class RestrictedSolidOnSolid(HeightModel):
             return 0.0 if counts[LOWER[0]] else self.flux
 
         return [Growth(Process("deposit", (0, 0), rate, (LOWER,)), 1)]
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """The exponent of Kardar, Parisi and Zhang on a chain."""
+        return {"growth exponent": KPZ} if case.lattice.kind == "chain" else {}

@@ -1,6 +1,6 @@
 """The single-step model: neighbours that always differ by one (Meakin et al. 1986)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Literal
 
 from mesokit.case.case import Case
@@ -9,12 +9,14 @@ from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.model.heights import (
     HIGHER,
+    KPZ,
     LOWER,
     Growth,
     HeightModel,
 )
+from mesokit.method.kinetic_monte_carlo.model.protocol import Known
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
-from mesokit.method.kinetic_monte_carlo.start import UniformStart
+from mesokit.method.kinetic_monte_carlo.start import TerraceStart, UniformStart
 
 
 @component
@@ -31,7 +33,7 @@ class SingleStep(HeightModel):
 
     def check(self, case: Case) -> None:
         """Raise CaseError for a start in which neighbours do not differ by one."""
-        if isinstance(case.lattice.first(), UniformStart):
+        if isinstance(case.lattice.first(), UniformStart | TerraceStart):
             raise CaseError(
                 "lattice.start: neighbours must differ by one in model 'single-step'; expected "
                 "'alternating', 'file' or 'run'"
@@ -48,3 +50,8 @@ class SingleStep(HeightModel):
             Growth(Process("rise", (0, 0), all_of(HIGHER, self.up), (HIGHER,)), 2),
             Growth(Process("fall", (0, 0), all_of(LOWER, self.down), (LOWER,)), -2),
         ]
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """The exponent of Kardar, Parisi and Zhang on a chain, where growth is driven."""
+        driven = self.up != self.down and case.lattice.kind == "chain"
+        return {"growth exponent": KPZ} if driven else {}

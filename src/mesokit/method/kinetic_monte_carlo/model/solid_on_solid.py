@@ -10,12 +10,14 @@ from pydantic import model_validator
 
 from mesokit.case.component import component, param, show, tag
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.lattice.patch import Patch
 from mesokit.method.kinetic_monte_carlo.model.heights import (
     AT_LEAST_AS_HIGH,
     LEVEL,
     Growth,
     HeightModel,
 )
+from mesokit.method.kinetic_monte_carlo.model.protocol import over_pairs
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
 
 DOWN = tuple(range(LEVEL - 1))  # columns two atoms lower or more: a hop onto one loses a level
@@ -73,3 +75,9 @@ class SolidOnSolid(HeightModel):
             return self.attempt_rate * math.exp(-barrier / self.kT) / directions
 
         return rate
+
+    def energy(self) -> Callable[[Patch], float] | None:
+        """That of the bonds between columns; None if atoms leave the surface."""
+        if self.evaporate:
+            return None
+        return lambda patch: over_pairs(patch, lambda a, b: -self.bond_energy * min(a, b))

@@ -7,9 +7,10 @@ depend on both states. When one neighbour changes, one difference of weights is 
 
 from __future__ import annotations
 
+import functools
 import itertools
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,9 +20,12 @@ from mesokit.case.component import component
 from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.lattice.grid import neighbour
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
+from mesokit.method.kinetic_monte_carlo.lattice.patch import Patch
 from mesokit.method.kinetic_monte_carlo.model.protocol import (
     UNLIKE,
     Model,
+    Move,
+    Moves,
     change_of_own,
     change_of_weight,
     number_alone,
@@ -42,7 +46,7 @@ class Process(NamedTuple):
     name: in results. site: its state before and after. rate: events in a unit of time, for each
     neighbour that takes part; or a function of the numbers of neighbours in each state, the last
     of which is that of the missing ones. counted: groups of states on whose numbers it depends;
-    the first of a group has the number of all.
+    the first of a group has the number of all, so that groups begin with different states.
     neighbour: states of a neighbour that may take part, and that after it; the state after the last
     one stands for a missing neighbour. directions: of that neighbour (all unless said).
     """
@@ -59,6 +63,31 @@ class Process(NamedTuple):
         if self.neighbour is None or state not in self.neighbour[0]:
             return False
         return self.directions is None or direction in self.directions
+
+    def rate_at(self, around: Sequence[int], missing: int) -> float:
+        """Its rate, by the states of the neighbours; `missing` stands for one that is not there."""
+        if not callable(self.rate):
+            return self.rate
+        counts = [0] * (missing + 1)
+        for some in self.counted:
+            counts[some[0]] = sum(state in some for state in around)
+        return self.rate(counts)
+
+
+def moves_of(processes: Sequence[Process], missing: int, patch: Patch, i: int) -> Iterator[Move]:
+    """What may happen at a site of a patch."""
+    around = patch.around(i, missing)
+    for one in processes:
+        if one.site[0] == patch.states[i] and (rate := one.rate_at(around, missing)) > 0:
+            new = i, one.site[1]
+            if one.neighbour is None:
+                yield Move(one.name, rate, (new,))
+                continue
+            for direction, state in enumerate(around):
+                if one.takes(direction, state):
+                    j = patch.near[i][direction]
+                    beside = ((j, one.neighbour[1]),) if j >= 0 else ()
+                    yield Move(one.name, rate, (new, *beside))
 
 
 @component
@@ -82,6 +111,10 @@ class TableModel(Model, ABC):
     def events(self) -> list[str]:
         """Names of the processes."""
         return [one.name for one in in_order(self.processes())]
+
+    def list_moves(self, kind: Kind) -> Moves | None:
+        """The processes of the table."""
+        return Moves(functools.partial(moves_of, self.processes(), len(self.states())))
 
 
 class Table(NamedTuple):
@@ -108,8 +141,7 @@ class Rates(NamedTuple):
     begin: (states + 1,) first process of each state. first: (states,) number of surroundings with
     each state. bits: of a state, or that of a neighbour, in an index. weights: by direction, state
     of the neighbour and of the site. own: by two states of a site, the difference of `first`, or
-    UNLIKE where weights differ too. rates: (m,) of all processes together. shares: (m * processes,),
-    for each neighbour that takes part. fits: (processes,) a bit for each state of a neighbour that
+    UNLIKE where weights differ too. rates: (m,) of all processes. shares: (m * processes,), for each neighbour that takes part. fits: (processes,) a bit for each state of a neighbour that
     may take part, 0 without a neighbour. towards: a bit for each direction.
     """
 
@@ -154,14 +186,15 @@ def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, e
             )
         for (k, b), feature in features.items():
             weights[k, state, b] = strides[feature] if feature >= 0 else 0
+        kinds = list({f: key for key, f in features.items() if f >= 0}.values())
         all_matter = -1 not in features.values()  # then each neighbour is of some feature
         for counts in itertools.product(*(range(number + 1) for number in reversed(most))):
             share, total = np.zeros(len(ordered)), 0.0
             if sum(counts) == z if all_matter else sum(counts) <= z:
-                found, partners = _counts(counts[::-1], features, own, others)
                 for p, one in own:
+                    found, partners = _counts(counts[::-1], kinds, one, others)
                     share[p] = one.rate(found) if callable(one.rate) else one.rate
-                    total += share[p] * (1 if one.neighbour is None else partners[p])
+                    total += share[p] * (1 if one.neighbour is None else partners)
             rates.append(total)
             shares.append(share)
     bits = int(max(states - 1, others)).bit_length()
@@ -209,20 +242,17 @@ def _features(
 
 
 def _counts(
-    counts: Sequence[int],
-    features: dict[tuple[int, int], int],
-    own: Sequence[tuple[int, Process]],
-    others: int,
-) -> tuple[list[int], dict[int, int]]:
-    """Neighbours in each state, or in one of those that are alike, and those that take part."""
-    found, partners = [0] * (others + 1), {p: 0 for p, _ in own}
-    for feature, number in enumerate(counts):
-        k, b = next(key for key, one in features.items() if one == feature)
-        groups = {some for _, one in own for some in one.counted if b in some}
-        for some in groups:
-            found[some[0]] += number
-        for p, one in own:
-            partners[p] += number * one.takes(k, b)
+    counts: Sequence[int], kinds: Sequence[tuple[int, int]], one: Process, others: int
+) -> tuple[list[int], int]:
+    """For a process: neighbours in each state, or in a group of states, and those that take part.
+
+    counts: neighbours of each feature; kinds: a direction and a state with that feature.
+    """
+    found, partners = [0] * (others + 1), 0
+    for (k, b), number in zip(kinds, counts, strict=True):
+        for some in one.counted:
+            found[some[0]] += number * (b in some)
+        partners += number * one.takes(k, b)
     return found, partners
 
 

@@ -9,8 +9,7 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, show, tag
 from mesokit.errors import CaseError
-from mesokit.method.kinetic_monte_carlo.expected import energy as expected_energy
-from mesokit.method.kinetic_monte_carlo.expected import ising
+from mesokit.method.kinetic_monte_carlo.expected import known_mean
 from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
@@ -62,7 +61,7 @@ class LatticeEnergyAccumulator(BlockAccumulator):
         """Mean and heat capacity."""
         case, means = self.case, of_mean(self.blocks)
         energy, square = map(float, means.value)
-        known, note = expected_energy(case)
+        known, note = known_mean(case, "energy")
         measured = means.scalar(energy, np.array([1.0, 0.0]))
         yield Comparison("mean energy", *measured, known, "energy", note)
         kT = getattr(case.lattice.model, "kT", 0.0)
@@ -71,9 +70,9 @@ class LatticeEnergyAccumulator(BlockAccumulator):
             measured = means.scalar(
                 factor * (square - energy**2), factor * np.array([-2 * energy, 1.0])
             )
-            known, note = ising(case, "square energy")
+            known, note = known_mean(case, "square energy")
             if not math.isnan(known):
-                known = factor * (known - ising(case, "energy")[0] ** 2)
+                known = factor * (known - known_mean(case, "energy")[0] ** 2)
             yield Comparison(
                 "heat capacity", *measured, known, "", note or "per site, from the variance"
             )

@@ -9,7 +9,7 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, show, tag
 from mesokit.errors import CaseError
-from mesokit.method.kinetic_monte_carlo.expected import ising
+from mesokit.method.kinetic_monte_carlo.expected import known_mean
 from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
 from mesokit.seam.estimate import of_mean
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
@@ -62,21 +62,21 @@ class MagnetisationAccumulator(BlockAccumulator):
         for k, (what, name) in enumerate(
             (("mean spin", "mean"), ("mean size", "size"), ("mean square", "square"))
         ):
-            known, note = ising(case, name)
+            known, note = known_mean(case, name)
             yield Comparison(what, *means.scalar((mean, size, square)[k], unit[k]), known, "", note)
         kT = getattr(case.lattice.model, "kT", 0.0)
         if kT > 0:
             factor = case.particles / kT
             slope = factor * (unit[2] - 2 * size * unit[1])
-            known, note = ising(case, "square")
+            known, note = known_mean(case, "square")
             if not math.isnan(known):
-                known = factor * (known - ising(case, "size")[0] ** 2)
+                known = factor * (known - known_mean(case, "size")[0] ** 2)
             measured = means.scalar(factor * (square - size**2), slope)
             yield Comparison("susceptibility", *measured, known, "", note)
         if square > 0:
             slope = (2 * fourth / (3 * square**3)) * unit[2] - unit[3] / (3 * square**2)
-            known, note = ising(case, "square")
+            known, note = known_mean(case, "square")
             if not math.isnan(known):
-                known = 1 - ising(case, "fourth")[0] / (3 * known**2)
+                known = 1 - known_mean(case, "fourth")[0] / (3 * known**2)
             measured = means.scalar(1 - fourth / (3 * square**2), slope)
             yield Comparison("Binder cumulant", *measured, known, "", note)
