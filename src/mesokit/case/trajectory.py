@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
+from mesokit.case.sites import SiteLattice
 
 Quantity = Literal["position", "velocity", "spin", "orientation", "image", "site", "id"]
 WIDTHS = {"image": 4, "site": 2, "id": 8}  # bytes of a field; the others follow the precision
@@ -32,10 +33,9 @@ class Group(NamedTuple):
     `has` are quantities of each in an engine: those that trajectories may hold, of which an
     "orientation" is a unit quaternion (w, x, y, z); "mass" and "diameter" where each has its own;
     "heading" where pictures show the direction of a velocity at one time. Sites of a lattice are a
-    group that has "site", the number of the state of each: `lattice` is how many there are along
-    each axis, numbered along the last one first, and `states` are the names of the states. `kT` is
-    the thermal energy of velocities; `picture` the kind of pictures that shows it unless another is
-    chosen.
+    group that has "site", the number of the state of each: `lattice` is where they are, and
+    `states` are the names of the states, none of heights. `kT` is the thermal energy of velocities;
+    `picture` the kind of pictures that shows it unless another is chosen.
     """
 
     name: str
@@ -43,13 +43,18 @@ class Group(NamedTuple):
     has: tuple[str, ...] = ("position", "velocity", "image", "id")
     kT: float = 0.0
     picture: str = ""
-    lattice: tuple[int, ...] = ()
+    lattice: SiteLattice | None = None
     states: tuple[str, ...] = ()
 
     @property
     def number(self) -> int:
         """How many particles."""
         return sum(kind.number for kind in self.kinds)
+
+    @property
+    def noun(self) -> str:
+        """What one of them is called in messages."""
+        return "particle" if self.lattice is None else "site"
 
 
 @component

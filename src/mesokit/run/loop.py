@@ -49,10 +49,9 @@ class Loop:
 
     def tell(self, last: int, progress: Reporter) -> None:
         """Report that the run goes on to a step."""
-        groups = self.schedule.case.groups
-        number = sum(group.number for group in groups)
-        what = "site" if any(group.lattice for group in groups) else "particle"
-        progress.start(last, number, "running", self.replicas.step, what)
+        case = self.schedule.case
+        number = sum(group.number for group in case.groups)
+        progress.start(last, number, "running", self.replicas.step, case.noun)
 
     def compile(self, progress: Reporter) -> None:
         """Load or compile the kernels, with a message if it takes long. A signal ends it at once.

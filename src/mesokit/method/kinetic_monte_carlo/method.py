@@ -17,13 +17,14 @@ from mesokit.seam.method import Columns, InitialState, Method
 
 def groups(case: Case) -> tuple[Group, ...]:
     """One group of sites."""
+    closed = tuple(axis in case.lattice.ends for axis in case.box.axes)
     return (
         Group(
             "sites",
             (Kind(1.0, sites_of(case)),),
             has=("site",),
             picture="sites",
-            lattice=tuple(map(int, case.box.size)),
+            lattice=case.lattice.lattice.sites(tuple(map(int, case.box.size)), closed),
             states=case.lattice.model.states(),
         ),
     )

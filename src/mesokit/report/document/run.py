@@ -113,12 +113,13 @@ def page(files: Files, path: Path, films: bool = False) -> str:
 def _lead(case: Case, record: Mapping[str, Any]) -> str:
     """The case in a line: method, size, particles, steps and seed."""
     size = " x ".join(f"{length:g}" for length in case.box.size)
-    particles = sum(group.number for group in case.groups)
+    number, noun = sum(group.number for group in case.groups), case.noun
+    of = f"lattice of {size} sites" if noun == "site" else f"box of {size} cells"
     merged, warmup = record.get("merged") or (), case.run.warmup
     steps = sum(run["step"] - warmup for run in merged) or case.run.steps
     words = [
-        f"{case.run.method}, box of {size} cells",
-        f"{particles:,} particles".replace(",", " "),
+        f"{case.run.method}, {of}",
+        f"{number:,} {noun}s".replace(",", " "),
         f"{steps} steps" + " in all" * bool(merged) + f" after {warmup} of warm-up" * bool(warmup),
         pooled_words(record) or f"seed {case.run.seed}",
     ]

@@ -34,10 +34,10 @@ class SiteSource:
         self.axes, self.time = view.axes or ("x", "y"), reader.time
         self.whole = np.arange(len(reader))
         self.setting = Setting.of(case, self.axes)
-        others = {*range(len(group.lattice))} - {*self.setting.columns}
+        others = {*range(len(group.lattice.size))} - {*self.setting.columns}
         self.third = next(iter(others), None)
         if self.third is not None:  # the middle layer unless a place is given
-            at, layers, length = view.at, group.lattice[self.third], case.box.size[self.third]
+            at, layers, length = view.at, group.lattice.size[self.third], case.box.size[self.third]
             if at is not None and not 0 <= at <= length:
                 raise CaseError(f"at = {show(at)}: expected a place from 0 to {length:g}")
             self.layer = min(int((0.5 if at is None else at / length) * layers), layers - 1)
@@ -45,7 +45,7 @@ class SiteSource:
     def flow(self, frames: NDArray[np.int64]) -> Flow:
         """States as they are in the last of the frames."""
         frame = int(frames[-1])
-        states = np.asarray(self.reader[frame]["site"]).reshape(self.group.lattice)
+        states = np.asarray(self.reader[frame]["site"]).reshape(self.group.lattice.size)
         if self.third is not None:
             states = states.take(self.layer, axis=self.third)
         if self.setting.columns[0] > self.setting.columns[1]:
