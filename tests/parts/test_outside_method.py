@@ -19,7 +19,6 @@ from mesokit import open as opened
 from mesokit.case.box import Box
 from mesokit.case.case import case_class
 from mesokit.case.checks import check
-from mesokit.case.run import Run
 from mesokit.case.sites import SiteLattice
 from mesokit.case.trajectory import Group, Kind, Trajectory
 from mesokit.errors import CaseError, RunError
@@ -153,7 +152,7 @@ def test_an_unknown_picture_of_a_group_names_the_method():
 def test_a_lattice_that_is_not_that_of_its_group_is_refused_at_once(size, sites, words):
     spins = Group("spins", (Kind(1.0, sites),), has=("site",), lattice=SiteLattice(size))
     case = SimpleNamespace(
-        run=Run(steps=1, method="flips"), box=Box([8, 8]), observe=(), groups=(spins,), trajectory=None
+        run=SimpleNamespace(method="flips"), box=Box([8, 8]), observe=(), groups=(spins,), trajectory=None
     )
     with pytest.raises(CaseError, match=words):
         check(case, SimpleNamespace(name="flips", observables=()))
