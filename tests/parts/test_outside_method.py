@@ -152,7 +152,11 @@ def test_an_unknown_picture_of_a_group_names_the_method():
 def test_a_lattice_that_is_not_that_of_its_group_is_refused_at_once(size, sites, words):
     spins = Group("spins", (Kind(1.0, sites),), has=("site",), lattice=SiteLattice(size))
     case = SimpleNamespace(
-        run=SimpleNamespace(method="flips"), box=Box([8, 8]), observe=(), groups=(spins,), trajectory=None
+        run=SimpleNamespace(method="flips"),
+        box=Box([8, 8]),
+        observe=(),
+        groups=(spins,),
+        trajectory=None,
     )
     with pytest.raises(CaseError, match=words):
         check(case, SimpleNamespace(name="flips", observables=()))

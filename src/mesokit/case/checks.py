@@ -9,8 +9,7 @@ from typing import Any, get_args
 from mesokit.case.box import AXES
 from mesokit.case.component import is_component, name_of, nearest, one_of, show
 from mesokit.case.registry import family_of
-from mesokit.case.sites import SiteLattice
-from mesokit.case.trajectory import Group, Kind, Quantity, written
+from mesokit.case.trajectory import Group, Quantity, written
 from mesokit.errors import CaseError
 
 MOST_BINS = 2**24  # of one observable: some gigabytes

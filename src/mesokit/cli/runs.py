@@ -161,14 +161,20 @@ def info(run: Path, as_json: bool) -> None:
     "path",
     type=FILE,
     required=True,
-    help="The file: .gsd, .lammpstrj, .xyz, .h5md, .dcd, .xtc, .trr or .data.",
+    help="The file: .gsd, .lammpstrj, .xyz, .h5md, .dcd, .xtc, .trr or .data; of a lattice .xyz, "
+    ".vti or .png.",
 )
-def export(run: Path, path: Path) -> None:
-    """Write the trajectory of RUN as a file for OVITO, HOOMD-blue, VMD or LAMMPS."""
+@click.option(
+    "--states", metavar="A,B", help="Only sites in these states, such as all but empty ones (.xyz)."
+)
+@click.option("--pixels", type=click.IntRange(1), help="Pixels along a side of a site (.png).  [1]")
+def export(run: Path, path: Path, states: str | None, pixels: int | None) -> None:
+    """Write the trajectory of RUN as a file for OVITO, HOOMD-blue, VMD, LAMMPS or ParaView."""
     import mesokit
 
     require_run(run)
-    click.echo(mesokit.open(run).export(path))
+    names = None if states is None else [name.strip() for name in states.split(",")]
+    click.echo(mesokit.open(run).export(path, names, pixels))
 
 
 @cli.command()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -227,16 +227,22 @@ class RunFiles(Shown, Mapping[str, Result]):
         require()
         return universe(*contents(self.directory, self.case, lambda: self.trajectory))
 
-    def export(self, path: str | Path) -> Path:
+    def export(
+        self, path: str | Path, states: Sequence[str] | None = None, pixels: int | None = None
+    ) -> Path:
         """Write the trajectory for another program, in the format of the ending.
 
         `.gsd` is for OVITO, HOOMD-blue and MDAnalysis; `.lammpstrj` and `.xyz` are text; `.h5md`,
-        `.dcd`, `.xtc` and `.trr` have all frames, `.data` (LAMMPS) the last. Raises CaseError for
-        any other, RunError without frames with positions.
+        `.dcd`, `.xtc` and `.trr` have all frames, `.data` (LAMMPS) the last. Sites of a lattice go
+        to `.xyz`, of some `states` or all; to `.vti`, a file for each frame for ParaView, listed in
+        a file `.pvd`; or to `.png`, an image of each frame with so many `pixels` (1 unless said)
+        along each side of a site. Raises CaseError for any other, RunError without frames of
+        places.
         """
         from mesokit.io.export import export
 
-        return export(self.directory, self.case, lambda: self.trajectory, path)
+        images = pictures.site_images(self.case, path, pixels)
+        return export(self.directory, self.case, lambda: self.trajectory, path, states, images)
 
     def _data(self) -> Path:
         if not self.directory.data_file.exists():

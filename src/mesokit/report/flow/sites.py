@@ -12,6 +12,7 @@ from mesokit.case.trajectory import Group
 from mesokit.errors import CaseError
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.flow.data import Flow
+from mesokit.report.flow.palette import colours
 from mesokit.report.flow.region import Region, View
 from mesokit.report.flow.scale import Scale, heat_map
 from mesokit.report.flow.setting import Setting
@@ -64,9 +65,7 @@ def scale(flow: Flow, reach: float) -> Scale:
     """A colour for each state, from light to dark, with its name if there is one."""
     number = int(reach) + 1
     names = flow.states if len(flow.states) == number <= MOST_NAMED else ()
-    from matplotlib import colormaps
-
-    return Scale(-0.5, number - 0.5, colormaps["cividis_r"].resampled(number), "state", names)
+    return Scale(-0.5, number - 0.5, colours(number), "state", names)
 
 
 def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
