@@ -13,19 +13,22 @@ from mesokit.method.kinetic_monte_carlo.section import Sections
 from mesokit.method.kinetic_monte_carlo.start import files_of, first_state, sites_of
 from mesokit.method.kinetic_monte_carlo.summary import summary
 from mesokit.seam.method import Columns, InitialState, Method
+from mesokit.seam.units import Units
 
 
 def groups(case: Case) -> tuple[Group, ...]:
     """One group of sites."""
     closed = tuple(axis in case.lattice.ends for axis in case.box.axes)
+    states = case.lattice.model.states()
+    usual = {1: "space-time" if states else "profiles", 3: "occupied"}
     return (
         Group(
             "sites",
             (Kind(1.0, sites_of(case)),),
             has=("site",),
-            picture="sites",
+            picture=usual.get(case.box.dimension, "sites"),
             lattice=case.lattice.lattice.sites(tuple(map(int, case.box.size)), closed),
-            states=case.lattice.model.states(),
+            states=states,
         ),
     )
 
@@ -61,4 +64,5 @@ METHOD = Method(
     initial=InitialState(first_state, Events.start, ("states",), files_of, "lattice.start.run"),
     engine=lambda case, threads, measures: Events(case, threads),
     log=columns,
+    units=Units(length="a"),  # the distance of neighbours
 )
