@@ -1,5 +1,6 @@
 """Which particles of a case are written, and how often."""
 
+import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
@@ -62,6 +63,12 @@ class Trajectory:
     """Particles written to the H5MD file of the run."""
 
     every: int = param(doc="steps between two frames", ge=1)
+    per_decade: int | None = param(
+        None,
+        doc="frames in each decade of time, of those every so many steps (all unless said)",
+        ge=1,
+        le=1000,
+    )
     of: str = param("all", doc='whose particles: "all", or, of an MPCD fluid, "fluid" or "solutes"')
     fields: Many[Quantity] = param(("position",), doc="what is written", min_length=1)
     subset: int | None = param(
@@ -69,6 +76,48 @@ class Trajectory:
     )
     precision: Literal["float32", "float64"] = param("float32", doc="of the stored numbers")
     compression: int = param(4, doc="gzip level: 0 none, 9 smallest", ge=0, le=9)
+
+    def due(self, passed: int) -> bool:
+        """True if a frame is due so many steps after the warm-up."""
+        if passed < 0 or passed % self.every:
+            return False
+        return self.next_after(passed - 1) == passed
+
+    def next_after(self, passed: int) -> int:
+        """The steps after the warm-up of the next frame, more than `passed`.
+
+        >>> spread = Trajectory(every=10, per_decade=3)
+        >>> [spread.next_after(passed) for passed in (-1, 0, 10, 90)]
+        [0, 10, 30, 100]
+        """
+        if passed < 0:
+            return 0
+        number = passed // self.every + 1  # of frames if all were due
+        if self.per_decade is not None:
+            number = _next_of_decade(number, self.per_decade)
+        return number * self.every
+
+    def frames(self, steps: int) -> Sequence[int]:
+        """Steps after the warm-up of all frames of a run of so many.
+
+        >>> Trajectory(every=1, per_decade=4).frames(40), Trajectory(every=5).frames(12)
+        ([0, 1, 2, 4, 6, 10, 18, 32], range(0, 13, 5))
+        """
+        if self.per_decade is None:
+            return range(0, steps + 1, self.every)
+        found, passed = [], self.next_after(-1)
+        while passed <= steps:
+            found.append(passed)
+            passed = self.next_after(passed)
+        return found
+
+
+def _next_of_decade(number: int, per_decade: int) -> int:
+    """The least of the rounded up powers 10^(m/per_decade) that is not below a number."""
+    m = max(0, math.floor(per_decade * math.log10(number)) - 1)
+    while (found := math.ceil(10 ** (m / per_decade) * (1 - 1e-12))) < number:
+        m += 1
+    return found
 
 
 def written(trajectory: Trajectory, groups: Sequence[Group]) -> tuple[int, int]:
@@ -151,6 +200,6 @@ def stored_bytes(
         WIDTHS.get(name, number) * components(name, dimension) for name in trajectory.fields
     )
     particles, _ = written(trajectory, groups)
-    frames = steps // trajectory.every + 1
+    frames = len(trajectory.frames(steps))
     shrink = COMPRESSED if trajectory.compression else 1.0
     return round(frames * min(trajectory.subset or particles, particles) * per_particle * shrink)
