@@ -24,7 +24,7 @@ from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.observe.shared.build_up import result_of
 from mesokit.run import pictures
 from mesokit.seam.in_units import in_units
-from mesokit.seam.method import method_of
+from mesokit.seam.method import absorbed_words, method_of
 from mesokit.seam.named import keyed
 from mesokit.seam.result import Comparison, Result
 
@@ -329,6 +329,8 @@ class RunFiles(Shown, Mapping[str, Result]):
             if lost := self.directory.record_lost:
                 lines.append(f"  warning: {lost}")
             lines += [f"  {line}" for line in work_words(self.provenance)]
+            if words := absorbed_words(self.provenance.get("absorbed")):
+                lines.append(f"  {words}")
             lines += [f"  warning: {words}" for words in self.provenance.get("warnings", ())]
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.so_far().values()]
         if self.ended and self.trajectory is not None:

@@ -73,6 +73,13 @@ class Replicas:
         """The step of all replicas."""
         return self.first.engine.step
 
+    @property
+    def absorbed(self) -> float | None:
+        """The time after which nothing can happen any more in any replica, or None."""
+        found = [method_of(one.case).absorbed(one.engine) for one in self.all]
+        times = [time for time in found if time is not None]
+        return max(times) if len(times) == len(found) else None
+
     def each(self, work: Callable[[Replica], Any]) -> None:
         """Call a function of each replica. Raises the first of their errors, with its seed."""
         if self.workers is None:

@@ -8,6 +8,7 @@ from mesokit.case.case import Case
 from mesokit.case.trajectory import Group, Kind
 from mesokit.method.kinetic_monte_carlo.checks import check
 from mesokit.method.kinetic_monte_carlo.engine.engine import Events
+from mesokit.method.kinetic_monte_carlo.engine.events import TIME
 from mesokit.method.kinetic_monte_carlo.observe import LatticeObservable
 from mesokit.method.kinetic_monte_carlo.section import Sections
 from mesokit.method.kinetic_monte_carlo.start import files_of, first_state, sites_of
@@ -52,6 +53,11 @@ def columns(case: Case) -> Columns:
     return Columns((*names, "events"), ("events",), read)
 
 
+def absorbed(engine: Events) -> float | None:
+    """The time of the last event, if no other can follow."""
+    return float(engine.course.clock[TIME]) if engine.absorbed else None
+
+
 METHOD = Method(
     name="kinetic-monte-carlo",
     sections=Sections,
@@ -64,5 +70,6 @@ METHOD = Method(
     initial=InitialState(first_state, Events.start, ("states",), files_of, "lattice.start.run"),
     engine=lambda case, threads, measures: Events(case, threads),
     log=columns,
+    absorbed=absorbed,
     units=Units(length="a"),  # the distance of neighbours
 )

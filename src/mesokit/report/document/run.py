@@ -14,7 +14,7 @@ from mesokit.report.document.record import citation, install, origin_rows, timin
 from mesokit.report.document.tables import changes, lines_of
 from mesokit.report.document.template import render
 from mesokit.report.finish.origin import as_text
-from mesokit.seam.method import Row, method_of, summary_of
+from mesokit.seam.method import Row, absorbed_words, method_of, summary_of
 from mesokit.seam.result import SUSPICIOUS, Result
 
 HEADINGS = {  # of the sections that a run may have, in the order of the page
@@ -125,6 +125,8 @@ def _lead(case: Case, record: Mapping[str, Any]) -> str:
     ]
     if record.get("ended"):
         words.append(f"ended {when(record['ended'])}")
+    if still := absorbed_words(record.get("absorbed")):
+        words.append(still)
     return ", ".join(words)
 
 
