@@ -119,7 +119,7 @@ def _lead(case: Case, record: Mapping[str, Any]) -> str:
     steps = sum(run["step"] - warmup for run in merged) or case.run.steps
     words = [
         f"{case.run.method}, {of}",
-        f"{number:,} {noun}s".replace(",", " "),
+        f"{number:,} {noun}s".replace(",", " ") * (noun != "site"),
         f"{steps} steps" + " in all" * bool(merged) + f" after {warmup} of warm-up" * bool(warmup),
         pooled_words(record) or f"seed {case.run.seed}",
     ]
@@ -127,7 +127,7 @@ def _lead(case: Case, record: Mapping[str, Any]) -> str:
         words.append(f"ended {when(record['ended'])}")
     if still := absorbed_words(record.get("absorbed")):
         words.append(still)
-    return ", ".join(words)
+    return ", ".join(filter(None, words))
 
 
 def _derived(case: Case) -> tuple[list[Row], tuple[str, ...]]:

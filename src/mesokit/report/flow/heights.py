@@ -22,10 +22,9 @@ SAMPLES = 24  # frames that the range of heights is taken from
 class Heights(SitePicture):
     """Heights less their mean, as columns lit from the left; light ones are high."""
 
-    TALL = 0.72
+    OF, HEIGHTS, TALL = (2,), True, 0.72
 
     def __init__(self, frames: SiteFrames) -> None:
-        frames.require((2,), True, "'profiles', 'sites', 'space-time' or 'occupied'")
         super().__init__(frames)
         self.map = SiteMap(frames.lattice, (0, 1), None, MOST)
         some = [self._away(int(k)) for k in evenly(len(frames), SAMPLES)]

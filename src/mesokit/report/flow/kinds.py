@@ -12,7 +12,7 @@ from mesokit.report.flow.maps import LINES, density, speed, vorticity
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
 from mesokit.report.flow.site_frames import lattice_group
-from mesokit.report.flow.site_kinds import SITE_KINDS
+from mesokit.report.flow.site_kinds import SITE_KINDS, require_fitting
 from mesokit.report.flow.source import Found
 
 
@@ -99,9 +99,6 @@ def panels_of(kind: str, case: Case, colour: str | None = None) -> tuple[Panel, 
             "expected 'particles', or another kind"
         )
     group = lattice_group(case)
-    if group is not None and any(panel.NEEDS != sites.NEEDS for panel in KINDS[kind]):
-        raise CaseError(
-            f"kind = {show(kind)}: {group.name} of method {show(case.run.method)} are at fixed "
-            f"places; expected {one_of(('sites', *SITE_KINDS))}"
-        )
+    if group is not None:
+        require_fitting(kind, case, group)
     return KINDS[kind]

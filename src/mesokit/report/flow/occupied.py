@@ -18,10 +18,9 @@ LIGHTEST, DARKEST = 0.92, 0.3  # of the colour map
 class Occupied(SitePicture):
     """All states but the first, which is the empty one, unless some are chosen."""
 
-    TALL = 0.9
+    OF, HEIGHTS, TALL = (3,), False, 0.9
 
     def __init__(self, frames: SiteFrames) -> None:
-        frames.require((3,), False, "'sites', 'heights' or 'space-time'")
         super().__init__(frames)
         from matplotlib import colormaps
         from matplotlib.lines import Line2D

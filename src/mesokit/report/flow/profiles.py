@@ -13,10 +13,9 @@ PALE, DARK = 0.3, 1.0  # of the colour map, from the first to the last time
 class Profiles(SitePicture):
     """Heights at several times as steps, from pale to dark; in a film those of one time."""
 
-    TALL = 0.62
+    OF, HEIGHTS, TALL = (1,), True, 0.62
 
     def __init__(self, frames: SiteFrames) -> None:
-        frames.require((1,), True, "'space-time', 'sites' or 'heights'")
         super().__init__(frames)
         self.ax = self.figure.subplots()
         lattice = frames.lattice

@@ -22,27 +22,22 @@ Numbers = NDArray[np.int64]
 
 
 class SiteFrames:
-    """Frames of sites, those in the window of a view. Raises CaseError, RunError.
+    """Frames of the sites of a group, those in the window of a view. Raises CaseError, RunError.
 
     `time` (frames,) and `step`; `names` of the states, none of heights.
     """
 
     def __init__(
-        self, kind: str, case: Case, reader: TrajectoryReader | State | None, view: View
+        self, kind: str, group: Group, reader: TrajectoryReader | State | None, view: View
     ) -> None:
-        group = lattice_group(case)
-        if group is None or group.lattice is None:
-            raise CaseError(
-                f"kind = {show(kind)}: method {show(case.run.method)} has no lattice; expected a "
-                "picture of particles or flow"
-            )
+        assert group.lattice is not None
         if reader is None or "site" not in reader.fields or not len(reader):
             raise RunError(
                 f"{kind}: this picture needs states of sites, and the run kept none of them; "
                 f"add to the case and run it again: {NEEDED}"
             )
         require_spacing(view.time)
-        self.kind, self.case, self.reader, self.view = kind, case, reader, view
+        self.reader, self.view = reader, view
         self.lattice: SiteLattice = group.lattice
         self.names: tuple[str, ...] = group.states
         self.frames = frames_in(reader.time, view.window)
@@ -60,21 +55,6 @@ class SiteFrames:
     def title(self, index: int) -> str:
         """The time of a frame."""
         return at(float(self.time[index]), 6)
-
-    def require(self, dimensions: tuple[int, ...], heights: bool | None, instead: str) -> None:
-        """Raise CaseError for a lattice of other dimensions, for states where a picture shows
-        heights, and the other way round; `instead` is a kind that may fit."""
-        given = f"kind = {show(self.kind)}: "
-        if self.lattice.dimension not in dimensions:
-            words = {1: "a chain", 2: "a plane of sites", 3: "sites in space"}
-            fitting = " or ".join(words[d] for d in dimensions)
-            here = words[self.lattice.dimension]
-            raise CaseError(f"{given}of {fitting}, and this lattice is {here}; expected {instead}")
-        if heights is not None and heights == bool(self.names):
-            what = ("heights", "states") if heights else ("states", "heights")
-            raise CaseError(
-                f"{given}of {what[0]}, and these sites have {what[1]}; expected {instead}"
-            )
 
     def chosen(self) -> list[int]:
         """Numbers of the states of `View.states`; unless said all but the first."""

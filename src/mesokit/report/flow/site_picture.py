@@ -2,6 +2,7 @@
 
 from typing import Any, ClassVar
 
+from mesokit.case.trajectory import Group
 from mesokit.report.flow.layout import width_of_page
 from mesokit.report.flow.site_frames import SiteFrames
 from mesokit.report.notebook import ShownFigure
@@ -10,9 +11,13 @@ from mesokit.report.notebook import ShownFigure
 class SitePicture:
     """A figure of frames of sites.
 
-    MOVES: whether a film has a picture of each frame; else all frames are in one. TALL: height of
-    the figure over its width.
+    OF: dimensions of the lattices that it shows. HEIGHTS: whether it shows heights (True), states
+    (False) or both (None). MOVES: whether a film has a picture of each frame; else all frames are
+    in one. TALL: height of the figure over its width.
     """
+
+    OF: ClassVar[tuple[int, ...]]
+    HEIGHTS: ClassVar[bool | None]
 
     MOVES: ClassVar[bool] = True
     TALL: ClassVar[float] = 0.75
@@ -20,6 +25,13 @@ class SitePicture:
     def __init__(self, frames: SiteFrames) -> None:
         self.frames, width = frames, width_of_page()
         self.figure: Any = ShownFigure(figsize=(width, self.TALL * width), layout="constrained")
+
+    @classmethod
+    def fits(cls, group: Group) -> bool:
+        """True if it shows sites of a group."""
+        assert group.lattice is not None
+        known = cls.HEIGHTS is None or bool(group.states) != cls.HEIGHTS
+        return group.lattice.dimension in cls.OF and known
 
     def still(self) -> None:
         """Draw the last frame, or what a picture shows of all."""

@@ -13,10 +13,9 @@ MOST = 2000  # rows: frames beyond are left out evenly
 class SpaceTime(SitePicture):
     """States of a chain as colours; of heights their deviation from the mean at each time."""
 
-    MOVES, TALL = False, 1.1
+    OF, HEIGHTS, MOVES, TALL = (1,), None, False, 1.1
 
     def __init__(self, frames: SiteFrames) -> None:
-        frames.require((1,), None, "'sites', 'heights' or 'occupied'")
         super().__init__(frames)
         ax = self.figure.subplots()
         rows = evenly(len(frames), MOST)
