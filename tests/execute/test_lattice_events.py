@@ -106,9 +106,11 @@ def test_what_is_kept_of_sites_is_as_if_it_were_made_anew(name, kind):
         np.testing.assert_array_equal(array, anew)
     choice = engine.choice
     able = choice.of[engine.places] < len(choice.rates) - 1
-    assert able.sum() == choice.numbers[:-1].sum() == choice.counts.reshape(-1, len(choice.rates))[
-        :, :-1
-    ].sum()
+    assert (
+        able.sum()
+        == choice.numbers[:-1].sum()
+        == choice.counts.reshape(-1, len(choice.rates))[:, :-1].sum()
+    )
 
 
 @given(cuts=st.lists(st.integers(1, 40), min_size=1, max_size=6), seed=st.integers(0, 2**63))

@@ -54,8 +54,11 @@ def columns(case: Case) -> Columns:
 
 
 def absorbed(engine: Events) -> float | None:
-    """The time of the last event, if no other can follow."""
-    return float(engine.course.clock[TIME]) if engine.absorbed else None
+    """The time of the last event, if no other can follow; on sublattices, which have a time of
+    their own each, that of the step."""
+    if not engine.absorbed:
+        return None
+    return engine.time if engine.blocks is not None else float(engine.course.clock[TIME])
 
 
 METHOD = Method(

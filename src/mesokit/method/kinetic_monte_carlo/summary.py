@@ -11,6 +11,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import name_of
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
+
 FAN = 16
 from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE
 from mesokit.method.kinetic_monte_carlo.start import RunStart, sites_of

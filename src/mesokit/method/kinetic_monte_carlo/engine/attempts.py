@@ -8,7 +8,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, fetch, foresee, keeps, planes_of, put, total_rate
+from mesokit.method.kinetic_monte_carlo.engine.choice import (
+    chance,
+    choose,
+    fetch,
+    foresee,
+    keeps,
+    planes_of,
+    put,
+    total_rate,
+)
 from mesokit.method.kinetic_monte_carlo.lattice.grid import fetch_site, place
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar

@@ -53,7 +53,9 @@ class Numbers(NamedTuple):
 def numbers_of(threads: int) -> Numbers:
     """Memory for those of so many threads."""
     size = AHEAD * threads
-    return Numbers(np.zeros(size), np.zeros(size), np.zeros(size, np.uint64), np.zeros(size, np.int64))
+    return Numbers(
+        np.zeros(size), np.zeros(size), np.zeros(size, np.uint64), np.zeros(size, np.int64)
+    )
 
 
 @scalar

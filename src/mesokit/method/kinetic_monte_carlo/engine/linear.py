@@ -7,7 +7,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.kinetic_monte_carlo.engine.choice import chance, choose, fetch, foresee, keeps, put, total_rate
+from mesokit.method.kinetic_monte_carlo.engine.choice import (
+    chance,
+    choose,
+    fetch,
+    foresee,
+    keeps,
+    put,
+    total_rate,
+)
 
 
 class Linear(NamedTuple):

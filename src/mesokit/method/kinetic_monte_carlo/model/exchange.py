@@ -41,7 +41,9 @@ for _function in (number_alone, weight, change_of_weight, change_of_own):
     _function.register(Exchanges)(_function.implementation(Table))
 
 
-def exchanges(energies: Energies, rate: Callable[[float], float], kind: Kind, ends: bool) -> Exchanges:
+def exchanges(
+    energies: Energies, rate: Callable[[float], float], kind: Kind, ends: bool
+) -> Exchanges:
     """All exchanges of unlike neighbours, at the rate that the change of energy gives."""
     states = len(energies.site)
     known: list[tuple[int, Counts]] = []  # state and numbers of neighbours in each state

@@ -124,7 +124,9 @@ def _(model, direction, state, other):
 def _(model, direction, state, old, new):
     before, after = _difference(state, old), _difference(state, new)
     of = model.of
-    return weight_in(of, direction, np.int64(0), after) - weight_in(of, direction, np.int64(0), before)
+    return weight_in(of, direction, np.int64(0), after) - weight_in(
+        of, direction, np.int64(0), before
+    )
 
 
 @change_of_own.register(Heights)
