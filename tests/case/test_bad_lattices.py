@@ -118,6 +118,14 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "odd turns": ({RANDOM: '{ rule = "alternating" }', "[12, 10]": "[11, 10]"}, ("even", "x")),
     "velocities": ({"[[observe]]": '[trajectory]\nevery = 1\nfields = ["velocity"]\n[[observe]]'},
                    ("trajectory.fields", "'site'")),
+    "no frame in a decade": (
+        {"[[observe]]": '[trajectory]\nevery = 1\nfields = ["site"]\nper_decade = 0\n[[observe]]'},
+        ("trajectory.per_decade = 0", "at least 1"),
+    ),
+    "part of the sites": (
+        {"[[observe]]": '[trajectory]\nevery = 1\nfields = ["site"]\nsubset = 5\n[[observe]]'},
+        ("trajectory.subset = 5", "written whole"),
+    ),
     "heights of spins": ({'"magnetisation"': '"roughness"'}, ("observe[#1]", "no heights")),
     "an observable of fluids": ({'"magnetisation"': '"flow-rate"'},
                                 ("observe[#1].quantity", "does not offer it")),

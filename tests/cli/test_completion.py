@@ -47,7 +47,7 @@ def new(*words: str) -> None:
 
 
 def test_pictures_and_templates() -> None:
-    assert offered("plot", "run", "--kind", "s") == ["streamlines", "speed", "sites"]
+    assert offered("plot", "run", "--kind", "s") == ["streamlines", "speed", "sites", "space-time"]
     assert offered("animate", "run", "--kind", "vo") == ["vorticity"]
     templates = ["poiseuille", "phase_separation"]
     examples = sorted(file.stem for file in (ROOT / "examples").glob("p*.toml"))

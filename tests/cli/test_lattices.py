@@ -121,4 +121,9 @@ def test_heights_are_kept_and_a_chain_has_no_map(tmp_path, monkeypatch, capsys):
     last = np.array(opened("case").trajectory[-1]["site"])
     assert last.mean() == pytest.approx(40, rel=0.1)
     capsys.readouterr()
-    has_words(refused(capsys, "plot", "case", "--kind", "sites"), ("box.size = [64]", "two axes"))
+    words = "kind = 'sites'", "heights on a chain", "'space-time' or 'profiles'"
+    has_words(refused(capsys, "plot", "case", "--kind", "sites"), words)
+    command("plot", "case", "--time", "log")
+    assert (tmp_path / "case" / "flow-profiles.png").exists()
+    command("export", "case", "--to", "grown.xyz")
+    assert (tmp_path / "grown.xyz").read_text().count("Lattice=") == 3

@@ -6,13 +6,16 @@ from mesokit import Box, Case, Run, Simulation
 from mesokit.method.kinetic_monte_carlo.section import Lattice
 
 
-def lattice_case(size, model, kind="square", steps=0, seed=1, warmup=0, observe=(), **lattice):
+def lattice_case(
+    size, model, kind="square", steps=0, seed=1, warmup=0, observe=(), trajectory=None, **lattice
+):
     """A case on a lattice."""
     return Case(
         run=Run(steps=steps, seed=seed, warmup=warmup, method="kinetic-monte-carlo"),
         box=Box(list(size)),
         lattice=Lattice(kind=kind, model=model, **lattice),
         observe=observe,
+        trajectory=trajectory,
     )
 
 

@@ -16,7 +16,10 @@ import pytest
 
 import mesokit
 from mesokit import open as opened
+from mesokit.case.box import Box
 from mesokit.case.case import case_class
+from mesokit.case.checks import check
+from mesokit.case.sites import SiteLattice
 from mesokit.case.trajectory import Group, Kind, Trajectory
 from mesokit.errors import CaseError, RunError
 from mesokit.io.trajectory import TrajectoryWriter
@@ -137,3 +140,23 @@ def test_an_unknown_picture_of_a_group_names_the_method():
     case = SimpleNamespace(groups=(rods,), run=SimpleNamespace(method="rods"))
     with pytest.raises(CaseError, match="method 'rods': picture = 'rodlike': expected 'quiver'"):
         usual(case, [], "four", in_time=False)
+
+
+@pytest.mark.parametrize(
+    "size, sites, words",
+    [
+        ((8, 8), 60, "method 'flips': group 'spins' has 60 sites; expected 64, as its lattice"),
+        ((64,), 64, r"method 'flips': group 'spins' has a lattice \(64,\); expected one of 2 axes"),
+    ],
+)
+def test_a_lattice_that_is_not_that_of_its_group_is_refused_at_once(size, sites, words):
+    spins = Group("spins", (Kind(1.0, sites),), has=("site",), lattice=SiteLattice(size))
+    case = SimpleNamespace(
+        run=SimpleNamespace(method="flips"),
+        box=Box([8, 8]),
+        observe=(),
+        groups=(spins,),
+        trajectory=None,
+    )
+    with pytest.raises(CaseError, match=words):
+        check(case, SimpleNamespace(name="flips", observables=()))

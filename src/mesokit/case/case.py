@@ -116,6 +116,11 @@ class Case(Shown):
         """Number of particles of the first group: of a fluid, without what is dissolved in it."""
         return self.groups[0].number if self.groups else 0
 
+    @property
+    def noun(self) -> str:
+        """What a particle of the first group is called in messages."""
+        return self.groups[0].noun if self.groups else "particle"
+
     @classmethod
     def from_toml(cls, path: str | Path, overrides: Mapping[str, Any] | None = None) -> Case:
         """Read a case file.

@@ -22,6 +22,7 @@ def check(case: Any, method: Any) -> None:
         *offered(case, method.name, method.observables),
         *names(case),
         *bins(case),
+        *lattices(case.run.method, case.box.size, case.groups),
         *trajectory(case, case.groups),
     ):
         raise CaseError(problem)
@@ -106,6 +107,25 @@ def log(case: Any, known: Sequence[str]) -> None:
             )
 
 
+def lattices(method: str, size: Sequence[float], groups: Sequence[Group]) -> Iterator[str]:
+    """Errors of a method: a lattice of other sites than those of its group, or of other axes than
+    the box has.
+
+    >>> squares = Group("sites", (Kind(1.0, 12),), lattice=SiteLattice((4, 4)))
+    >>> next(lattices("mine", (4, 4), [squares]))
+    "method 'mine': group 'sites' has 12 sites; expected 16, as its lattice has (4, 4)"
+    """
+    for group in groups:
+        lattice, of = group.lattice, f"method {show(method)}: group {show(group.name)} has"
+        if lattice is None:
+            continue
+        if group.number != lattice.number:
+            expected = f"expected {lattice.number}, as its lattice has {lattice.size}"
+            yield f"{of} {group.number} sites; {expected}"
+        elif lattice.dimension != len(size):
+            yield f"{of} a lattice {lattice.size}; expected one of {len(size)} axes, as the box"
+
+
 def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
     """Particles that exist, each field once, and fields that they have."""
     given = case.trajectory
@@ -113,12 +133,15 @@ def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
         return
     known = ["all", *(group.name for group in groups)]
     number, _ = written(given, groups)
+    noun = groups[0].noun if groups else "particle"
     if given.of not in known:
         yield f"trajectory.of = {show(given.of)}: expected {one_of(known)}"
     elif number == 0:
-        yield f"trajectory.of = {show(given.of)}: there is no such particle"
+        yield f"trajectory.of = {show(given.of)}: there is no such {noun}"
     elif given.subset is not None and given.subset > number:
-        yield f"trajectory.subset = {given.subset}: there are only {number} particles"
+        yield f"trajectory.subset = {given.subset}: there are only {number} {noun}s"
+    elif given.subset is not None and noun == "site":
+        yield f"trajectory.subset = {given.subset}: a lattice is written whole; leave it out"
     if len(set(given.fields)) < len(given.fields):
         yield f"trajectory.fields = {show(given.fields)}: expected each field once"
     for group in groups:

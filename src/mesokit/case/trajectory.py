@@ -1,5 +1,6 @@
 """Which particles of a case are written, and how often."""
 
+import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
+from mesokit.case.sites import SiteLattice
 
 Quantity = Literal["position", "velocity", "spin", "orientation", "image", "site", "id"]
 WIDTHS = {"image": 4, "site": 2, "id": 8}  # bytes of a field; the others follow the precision
@@ -32,10 +34,9 @@ class Group(NamedTuple):
     `has` are quantities of each in an engine: those that trajectories may hold, of which an
     "orientation" is a unit quaternion (w, x, y, z); "mass" and "diameter" where each has its own;
     "heading" where pictures show the direction of a velocity at one time. Sites of a lattice are a
-    group that has "site", the number of the state of each: `lattice` is how many there are along
-    each axis, numbered along the last one first, and `states` are the names of the states. `kT` is
-    the thermal energy of velocities; `picture` the kind of pictures that shows it unless another is
-    chosen.
+    group that has "site", the number of the state of each: `lattice` is where they are, and
+    `states` are the names of the states, none of heights. `kT` is the thermal energy of velocities;
+    `picture` the kind of pictures that shows it unless another is chosen.
     """
 
     name: str
@@ -43,7 +44,7 @@ class Group(NamedTuple):
     has: tuple[str, ...] = ("position", "velocity", "image", "id")
     kT: float = 0.0
     picture: str = ""
-    lattice: tuple[int, ...] = ()
+    lattice: SiteLattice | None = None
     states: tuple[str, ...] = ()
 
     @property
@@ -51,12 +52,23 @@ class Group(NamedTuple):
         """How many particles."""
         return sum(kind.number for kind in self.kinds)
 
+    @property
+    def noun(self) -> str:
+        """What one of them is called in messages."""
+        return "particle" if self.lattice is None else "site"
+
 
 @component
 class Trajectory:
     """Particles written to the H5MD file of the run."""
 
     every: int = param(doc="steps between two frames", ge=1)
+    per_decade: int | None = param(
+        None,
+        doc="frames in each decade of time, of those every so many steps (all unless said)",
+        ge=1,
+        le=1000,
+    )
     of: str = param("all", doc='whose particles: "all", or, of an MPCD fluid, "fluid" or "solutes"')
     fields: Many[Quantity] = param(("position",), doc="what is written", min_length=1)
     subset: int | None = param(
@@ -64,6 +76,48 @@ class Trajectory:
     )
     precision: Literal["float32", "float64"] = param("float32", doc="of the stored numbers")
     compression: int = param(4, doc="gzip level: 0 none, 9 smallest", ge=0, le=9)
+
+    def due(self, passed: int) -> bool:
+        """True if a frame is due so many steps after the warm-up."""
+        if passed < 0 or passed % self.every:
+            return False
+        return self.next_after(passed - 1) == passed
+
+    def next_after(self, passed: int) -> int:
+        """The steps after the warm-up of the next frame, more than `passed`.
+
+        >>> spread = Trajectory(every=10, per_decade=3)
+        >>> [spread.next_after(passed) for passed in (-1, 0, 10, 90)]
+        [0, 10, 30, 100]
+        """
+        if passed < 0:
+            return 0
+        number = passed // self.every + 1  # of frames if all were due
+        if self.per_decade is not None:
+            number = _next_of_decade(number, self.per_decade)
+        return number * self.every
+
+    def frames(self, steps: int) -> Sequence[int]:
+        """Steps after the warm-up of all frames of a run of so many.
+
+        >>> Trajectory(every=1, per_decade=4).frames(40), Trajectory(every=5).frames(12)
+        ([0, 1, 2, 4, 6, 10, 18, 32], range(0, 13, 5))
+        """
+        if self.per_decade is None:
+            return range(0, steps + 1, self.every)
+        found, passed = [], self.next_after(-1)
+        while passed <= steps:
+            found.append(passed)
+            passed = self.next_after(passed)
+        return found
+
+
+def _next_of_decade(number: int, per_decade: int) -> int:
+    """The least of the rounded up powers 10^(m/per_decade) that is not below a number."""
+    m = max(0, math.floor(per_decade * math.log10(number)) - 1)
+    while (found := math.ceil(10 ** (m / per_decade) * (1 - 1e-12))) < number:
+        m += 1
+    return found
 
 
 def written(trajectory: Trajectory, groups: Sequence[Group]) -> tuple[int, int]:
@@ -146,6 +200,6 @@ def stored_bytes(
         WIDTHS.get(name, number) * components(name, dimension) for name in trajectory.fields
     )
     particles, _ = written(trajectory, groups)
-    frames = steps // trajectory.every + 1
+    frames = len(trajectory.frames(steps))
     shrink = COMPRESSED if trajectory.compression else 1.0
     return round(frames * min(trajectory.subset or particles, particles) * per_particle * shrink)

@@ -45,7 +45,7 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
             yield (
                 f"the trajectory takes about {size_text(trajectory)} "
                 f"({size_text(free)} are free here); raise trajectory.every or set "
-                "trajectory.subset"
+                f"trajectory.{'per_decade' if case.noun == 'site' else 'subset'}"
             )
     if not has_memory(memory):
         yield (

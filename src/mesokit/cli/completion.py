@@ -15,9 +15,9 @@ def beginning(text: str, names: Iterable[str]) -> list[CompletionItem]:
 
 def kinds(context: click.Context, option: click.Parameter, text: str) -> list[CompletionItem]:
     """Kinds of pictures of the flow."""
-    from mesokit.report.flow import KINDS
+    from mesokit.report.flow import NAMES
 
-    return beginning(text, KINDS)
+    return beginning(text, NAMES)
 
 
 def colours(context: click.Context, option: click.Parameter, text: str) -> list[CompletionItem]:

@@ -28,7 +28,10 @@ from mesokit.errors import CaseError
 if TYPE_CHECKING:
     from mesokit.run.opened import RunFiles
 
-KIND = "quiver, streamlines, particles, density, speed, vorticity, four, disks or flock"
+KIND = (
+    "quiver, streamlines, particles, density, speed, vorticity, four, disks, flock; of a lattice "
+    "sites, space-time, profiles, heights or occupied"
+)
 SHORT, LONG = 2.0, 5  # seconds: of a film too short to be seen, and slowed down
 
 
@@ -54,6 +57,11 @@ def _window(context: click.Context, option: click.Parameter, text: str | None) -
     if ranges is not None and len(ranges) != 1:
         raise CaseError(f"--window {text}: expected t0:t1, two times")
     return ranges and ranges[0]
+
+
+def _names(context: click.Context, option: click.Parameter, text: str | None) -> Any:
+    """'A,B' as names."""
+    return text if text is None else tuple(name.strip() for name in text.split(","))
 
 
 _choices = options(  # the part of the flow that is drawn
@@ -85,6 +93,17 @@ _choices = options(  # the part of the flow that is drawn
         shell_complete=colours,
         metavar="NAME",
         help="Of spheres: speed, log-speed, relative-speed, spin, neighbours, psi6, kind.  [speed]",
+    ),
+    click.option(
+        "--states",
+        callback=_names,
+        metavar="A,B",
+        help="States of sites that kind occupied shows.  [all but the first]",
+    ),
+    click.option(
+        "--time",
+        type=click.Choice(["linear", "log"]),
+        help="Spacing of the times of a film, or of profiles.  [linear]",
     ),
 )
 
@@ -180,8 +199,11 @@ def _usual(files: RunFiles, first: str, choices: Any, in_time: bool) -> str:
     """The kind of picture for which the files of a run have enough."""
     from mesokit.report.flow import usual
     from mesokit.report.flow.region import View
+    from mesokit.report.flow.site_kinds import own_kind
     from mesokit.report.flow.source import sources
 
+    if own := own_kind(files.case):
+        return own
     found = sources(files.case, files.results, files.trajectory, View(**choices))
     return usual(files.case, found, first, in_time)
 

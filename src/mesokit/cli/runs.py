@@ -161,14 +161,20 @@ def info(run: Path, as_json: bool) -> None:
     "path",
     type=FILE,
     required=True,
-    help="The file: .gsd, .lammpstrj, .xyz, .h5md, .dcd, .xtc, .trr or .data.",
+    help="The file: .gsd, .lammpstrj, .xyz, .h5md, .dcd, .xtc, .trr or .data; of a lattice .xyz, "
+    ".vti or .png.",
 )
-def export(run: Path, path: Path) -> None:
-    """Write the trajectory of RUN as a file for OVITO, HOOMD-blue, VMD or LAMMPS."""
+@click.option(
+    "--states", metavar="A,B", help="Only sites in these states, such as all but empty ones (.xyz)."
+)
+@click.option("--pixels", type=click.IntRange(1), help="Pixels along a side of a site (.png).  [1]")
+def export(run: Path, path: Path, states: str | None, pixels: int | None) -> None:
+    """Write the trajectory of RUN as a file for OVITO, HOOMD-blue, VMD, LAMMPS or ParaView."""
     import mesokit
 
     require_run(run)
-    click.echo(mesokit.open(run).export(path))
+    names = None if states is None else [name.strip() for name in states.split(",")]
+    click.echo(mesokit.open(run).export(path, names, pixels))
 
 
 @cli.command()
@@ -227,17 +233,17 @@ def _files_of_run(output: Path) -> list[Path]:
     from mesokit.case.case import Case
     from mesokit.io.log_file import ASIDE
     from mesokit.io.run_directory import RunDirectory
-    from mesokit.report.flow import KINDS
+    from mesokit.report.flow import NAMES
 
     run = RunDirectory(output)
     if not run.case_file.is_file():
         return []
-    figures = [run.flow_file(kind, ".png") for kind in KINDS]
+    figures = [run.flow_file(kind, ".png") for kind in NAMES]
     with contextlib.suppress(CaseError):
         figures += [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
     return [
         *(figure.with_suffix(f".{end}") for figure in figures for end in FORMATS),
-        *(run.flow_file(kind, end) for kind in KINDS for end in (".mp4", ".gif")),
+        *(run.flow_file(kind, end) for kind in NAMES for end in (".mp4", ".gif")),
         *output.glob(f"{ASIDE}*.csv"), *output.glob(".*.tmp"), *run.files_of_parts(),
         run.data_file, run.checkpoint_file, run.log_file, run.report_file, run.provenance_file,
         run.trajectory_folder, run.trajectory_remains, run.trajectory_coming,

@@ -1,7 +1,8 @@
 """The trajectory of a run as a file for other programs."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,13 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
-from mesokit.case.trajectory import masses_and_kinds, names_and_diameters, written
+from mesokit.case.trajectory import Group, masses_and_kinds, names_and_diameters, written
 from mesokit.errors import CaseError, RunError
+from mesokit.io import site_files
 from mesokit.io.atomic import replacing
 from mesokit.io.moments import Moment, Particles
 from mesokit.io.run_directory import RunDirectory
+from mesokit.io.site_files import Frames, SiteFrame, SiteWriter
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.seam.method import method_of
@@ -23,15 +26,32 @@ Array = NDArray[Any]
 
 Reader = Callable[[], "TrajectoryReader | None"]
 Writer = Callable[[Path, Particles, Iterator[Moment]], None]
+NO_IMAGES: Mapping[str, SiteWriter] = MappingProxyType({})
 
 
-def export(directory: RunDirectory, case: Case, trajectory: Reader, path: str | Path) -> Path:
+def export(
+    directory: RunDirectory,
+    case: Case,
+    trajectory: Reader,
+    path: str | Path,
+    states: Sequence[str] | None = None,
+    images: Mapping[str, SiteWriter] = NO_IMAGES,
+) -> Path:
     """Write all frames of a run to a file in the format of its ending; an old file is replaced.
 
-    Of a run that has not ended, frames are those up to its last checkpoint. Raises CaseError for
-    another ending, RunError without frames with positions.
+    Of sites, those in some `states` may be written alone; `images` are writers of pictures of
+    them by ending. Returns the file; of a series the one that lists it, or the first. Of a run that
+    has not ended, frames are those up to its last checkpoint. Raises CaseError for another ending,
+    RunError without frames of places.
     """
-    path = Path(path)
+    path, group = Path(path), _lattice(case)
+    if group is not None:
+        known = {".xyz": site_files.xyz, ".vti": site_files.vti, **images}
+        write_sites = known[_known_ending(path, known)]
+        sites = site_files.sites_of(group, states)
+        return write_sites(path, sites, site_frames(directory, case, trajectory))
+    if states is not None:
+        raise CaseError(f"states = {show(list(states))}: only of sites of a lattice; leave it out")
     write = _writer_for(path)
     particles, moments = contents(directory, case, trajectory)
     with replacing(path) as temporary:
@@ -40,19 +60,56 @@ def export(directory: RunDirectory, case: Case, trajectory: Reader, path: str | 
     return path
 
 
+def _lattice(case: Case) -> Group | None:
+    """The group of sites, if there is one."""
+    return next((group for group in case.groups if group.lattice is not None), None)
+
+
+def site_frames(directory: RunDirectory, case: Case, trajectory: Reader) -> Frames:
+    """A function that goes over all frames of sites. Raises RunError where there are none."""
+    _require(directory, case, "site")
+    next(iter(_contents(directory, case, trajectory)[1]))
+
+    def frames() -> Iterator[SiteFrame]:
+        for frame in _contents(directory, case, trajectory)[1]:
+            yield SiteFrame(int(frame["step"]), float(frame["time"]), np.asarray(frame["site"]))
+
+    return frames
+
+
 def contents(
     directory: RunDirectory, case: Case, trajectory: Reader
 ) -> tuple[Particles, Iterator[Moment]]:
     """The particles of a run and all its frames. Raises RunError where there are none."""
-    if case.trajectory is None:
+    if _lattice(case) is not None:
         raise RunError(
-            f"{directory.path}: it keeps no trajectory; run it with a section [trajectory]"
+            f"{directory.path}: it has sites, and no particles; export writes them as '.xyz'"
         )
-    if "position" not in case.trajectory.fields:
-        key = f"trajectory.fields = {show(case.trajectory.fields)}"
-        raise RunError(f"{directory.path}: {key}: exports need 'position'")
+    _require(directory, case, "position")
     particles, frames = _contents(directory, case, trajectory)
     return particles, (_moment(case, frame) for frame in frames)
+
+
+def _require(directory: RunDirectory, case: Case, field: str) -> None:
+    """Raise RunError unless a run keeps a trajectory with a field."""
+    if case.trajectory is None:
+        also = f' and fields = ["{field}"]' * (field != "position")
+        raise RunError(
+            f"{directory.path}: it keeps no trajectory; run it with a section [trajectory]{also}"
+        )
+    if field not in case.trajectory.fields:
+        key = f"trajectory.fields = {show(case.trajectory.fields)}"
+        raise RunError(f"{directory.path}: {key}: exports need {show(field)}")
+
+
+def _known_ending(path: Path, known: Mapping[str, Any]) -> str:
+    """The ending of a file. Raises CaseError for another one."""
+    if path.suffix not in known:
+        raise CaseError(
+            f"{path}: ending {show(path.suffix)}: expected {one_of(list(known))}"
+            f"{nearest(path.suffix, known)}"
+        )
+    return path.suffix
 
 
 def _writer_for(path: Path) -> Writer:
@@ -66,11 +123,7 @@ def _writer_for(path: Path) -> Writer:
         **dict.fromkeys(mdanalysis.FRAMES, mdanalysis.write_frames),
         ".data": _write_data,
     }
-    if path.suffix not in known:
-        raise CaseError(
-            f"{path}: ending {show(path.suffix)}: expected {one_of(list(known))}"
-            f"{nearest(path.suffix, known)}"
-        )
+    _known_ending(path, known)
     if path.suffix == ".gsd":
         gsd_file.require()
     elif path.suffix in mdanalysis.FRAMES:

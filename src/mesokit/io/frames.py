@@ -25,7 +25,7 @@ def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
     """
     if case.trajectory is None:
         return
-    place, every = directory.trajectory_folder, case.trajectory.every
+    place, warmup = directory.trajectory_folder, case.run.warmup
     particles = written(case.trajectory, case.groups)
     there = TrajectoryWriter(case.trajectory, place, *particles).steps()
     if not len(there) and directory.data_file.exists():
@@ -35,8 +35,8 @@ def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
         except RunError:
             why = "damaged, and only it held the frames of the trajectory; put a copy in its place"
             raise RunError(f"{place}: {why}, or run anew: {directory.again}") from None
-    last = min(step, case.run.warmup + case.run.steps)
-    wanted = range(case.run.warmup, last + 1, every)
+    last = min(step, warmup + case.run.steps)
+    wanted = [warmup + passed for passed in case.trajectory.frames(last - warmup)]
     if lost := sorted(set(wanted) - set(there.tolist())):
         why = f"{len(lost)} of {len(wanted)} frames are missing, the first that of step {lost[0]}"
         raise RunError(f"{place}: {why}; put the files back, or run anew: {directory.again}")

@@ -27,6 +27,7 @@ RECORD: dict[str, Any] = {
     "lengthened": [{"at": str, "step": int, "steps": int}],
     "ended": (str, None),
     "failed": (str, None),
+    "absorbed": (*NUMBER, None),
     "timings": {"*": NUMBER},
     "shared_work": dict,
     "merged": [{"run": str, "seed": int}],

@@ -5,11 +5,12 @@ Columns have the names of LAMMPS, VMD and OVITO: of spheres also radius and angu
 
 import math
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.io.moments import Moment, Particles
 
@@ -49,31 +50,49 @@ def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
 def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     """Extended XYZ: kinds by name, molecules from 1, velocities if known; no images."""
     kinds = np.array(particles.names)[particles.kind]
-    open_axes = " ".join("F" if shut else "T" for shut in particles.closed)
     with path.open("w", encoding="utf-8", newline="\n") as file:
         for now in moments:
             edges = np.diag(particles.size)
             edges[1, 0] = now.tilt
-            lattice = " ".join(f"{number:.9g}" for number in edges.ravel())
-            velocity = "" if now.velocity is None else ":velo:R:3"
-            spin = "" if now.spin is None else ":angular_velocity:R:3"
-            turned, scalar_last = "", None  # the order in which OVITO reads quaternions from XYZ
-            if now.orientation is not None:
-                turned, scalar_last = ":orientation:R:4", np.roll(now.orientation, -1, axis=1)
-            file.write(
-                f'{len(kinds)}\nLattice="{lattice}" '
-                f"Properties=species:S:1:pos:R:3:id:I:1:molecule:I:1:radius:R:1{velocity}{spin}{turned}"
-                f' Time={now.time:.9g} Step={now.step} pbc="{open_axes}"\n'
-            )
             columns: list[tuple[str, str, Any]] = [
-                ("species", "%s", kinds), *_vector("x y z", FIGURES, now.position),
-                ("id", "%d", particles.number + 1), ("molecule", "%d", particles.molecule + 1),
-                ("radius", FIGURES, 0.5 * particles.diameter),
-                *_vector("vx vy vz", FIGURES, now.velocity),
-                *_vector("wx wy wz", FIGURES, now.spin),
-                *_vector("qx qy qz qw", FIGURES, scalar_last),
+                ("species:S:1", "%s", kinds), ("pos:R:3", FIGURES, now.position),
+                ("id:I:1", "%d", particles.number + 1),
+                ("molecule:I:1", "%d", particles.molecule + 1),
+                ("radius:R:1", FIGURES, 0.5 * particles.diameter),
             ]  # fmt: skip
-            _table(file, columns)
+            if now.velocity is not None:
+                columns.append(("velo:R:3", FIGURES, now.velocity))
+            if now.spin is not None:
+                columns.append(("angular_velocity:R:3", FIGURES, now.spin))
+            if now.orientation is not None:  # scalar last, as OVITO reads quaternions from XYZ
+                columns.append(("orientation:R:4", FIGURES, np.roll(now.orientation, -1, axis=1)))
+            extended_frame(file, edges, particles.closed, (now.time, now.step), columns)
+
+
+def extended_frame(
+    file: TextIO,
+    edges: NDArray[np.float64],
+    closed: Sequence[bool],
+    when: tuple[float, int],
+    columns: Sequence[tuple[str, str, Any]],
+) -> None:
+    """A frame of extended XYZ.
+
+    Parameters: `edges` (3, 3) of the box, a row for each; its `closed` axes (3,); time and step;
+    declarations of columns, the format of each number, and values (n,) or (n, numbers of a row).
+    """
+    lattice = " ".join(f"{number:.9g}" for number in edges.ravel())
+    open_axes = " ".join("F" if shut else "T" for shut in closed)
+    properties = ":".join(declared for declared, _, _ in columns)
+    file.write(
+        f'{len(columns[0][2])}\nLattice="{lattice}" Properties={properties}'
+        f' Time={when[0]:.9g} Step={when[1]} pbc="{open_axes}"\n'
+    )
+    flat = []
+    for declared, form, values in columns:
+        single = [values] if values.ndim == 1 else values.T
+        flat += [(declared, form, column) for column in single]
+    _table(file, flat)
 
 
 def data_of_spheres(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
@@ -110,7 +129,7 @@ def _vector(names: str, form: str, values: Any) -> Iterator[tuple[str, str, Any]
         yield name, form, values[:, column]
 
 
-def _table(file: TextIO, columns: list[tuple[str, str, Any]]) -> None:
+def _table(file: TextIO, columns: Sequence[tuple[str, str, Any]]) -> None:
     """A line for each particle."""
     line = " ".join(form for _, form, _ in columns) + "\n"
     rows = zip(*(values.tolist() for _, _, values in columns), strict=True)

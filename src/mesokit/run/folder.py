@@ -126,7 +126,8 @@ class Folder:
     # --- the end --------------------------------------------------------------------------------
 
     def end(self, results: Mapping[str, Result], spent: Mapping[str, Any]) -> None:
-        """Write results, figures, and the record; `spent` are the times of stages."""
+        """Write results, figures, and the record; `spent` are the times of stages, and that after
+        which nothing could happen."""
 
         def write() -> None:
             record = self.directory.read_provenance() | {"ended": now(), **spent}

@@ -22,6 +22,7 @@ from mesokit.run.replicas import Replicas
 from mesokit.run.schedule import Leg, Schedule
 from mesokit.run.stop import Stop
 from mesokit.seam.engine import Interrupted
+from mesokit.seam.method import absorbed_words
 
 SILENT = 0.7  # seconds of compiling without a message
 CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
@@ -46,13 +47,13 @@ class Loop:
         self.ranks, self.schedule, self.replicas = ranks, schedule, replicas
         self.callbacks, self.stop, self.call = callbacks, stop, call
         self.folder: Folder | None = None
+        self.absorbed = ""  # what was said of a state that nothing can change
 
     def tell(self, last: int, progress: Reporter) -> None:
         """Report that the run goes on to a step."""
-        groups = self.schedule.case.groups
-        number = sum(group.number for group in groups)
-        what = "site" if any(group.lattice for group in groups) else "particle"
-        progress.start(last, number, "running", self.replicas.step, what)
+        case = self.schedule.case
+        number = sum(group.number for group in case.groups)
+        progress.start(last, number, "running", self.replicas.step, case.noun)
 
     def compile(self, progress: Reporter) -> None:
         """Load or compile the kernels, with a message if it takes long. A signal ends it at once.
@@ -93,10 +94,19 @@ class Loop:
             self._call_back()
             self._keep_if_due(order, pace)
             progress.update(self.replicas.step)
+            self._tell_absorbed(progress)
         else:
             coming()  # its value is not needed, but the other ranks wait for the message
         if self.folder is not None and self.replicas.step < self.schedule.last_step:
             self.folder.checkpoint(self.replicas)
+
+    def _tell_absorbed(self, progress: Reporter) -> None:
+        """Report once that nothing can happen any more. The steps that are left take no time, but
+        their samples count: the state lasts."""
+        words = absorbed_words(self.replicas.absorbed)
+        if words and words != self.absorbed:
+            progress.tell(words)
+        self.absorbed = words
 
     def _ahead(self, pace: Pace, step: int, last: int) -> Coming:
         """Send or receive the order for the time after a step."""

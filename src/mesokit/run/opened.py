@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,7 +24,7 @@ from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.observe.shared.build_up import result_of
 from mesokit.run import pictures
 from mesokit.seam.in_units import in_units
-from mesokit.seam.method import method_of
+from mesokit.seam.method import absorbed_words, method_of
 from mesokit.seam.named import keyed
 from mesokit.seam.result import Comparison, Result
 
@@ -227,16 +227,22 @@ class RunFiles(Shown, Mapping[str, Result]):
         require()
         return universe(*contents(self.directory, self.case, lambda: self.trajectory))
 
-    def export(self, path: str | Path) -> Path:
+    def export(
+        self, path: str | Path, states: Sequence[str] | None = None, pixels: int | None = None
+    ) -> Path:
         """Write the trajectory for another program, in the format of the ending.
 
         `.gsd` is for OVITO, HOOMD-blue and MDAnalysis; `.lammpstrj` and `.xyz` are text; `.h5md`,
-        `.dcd`, `.xtc` and `.trr` have all frames, `.data` (LAMMPS) the last. Raises CaseError for
-        any other, RunError without frames with positions.
+        `.dcd`, `.xtc` and `.trr` have all frames, `.data` (LAMMPS) the last. Sites of a lattice go
+        to `.xyz`, of some `states` or all; to `.vti`, a file for each frame for ParaView, listed in
+        a file `.pvd`; or to `.png`, an image of each frame with so many `pixels` (1 unless said)
+        along each side of a site. Raises CaseError for any other, RunError without frames of
+        places.
         """
         from mesokit.io.export import export
 
-        return export(self.directory, self.case, lambda: self.trajectory, path)
+        images = pictures.site_images(self.case, path, pixels)
+        return export(self.directory, self.case, lambda: self.trajectory, path, states, images)
 
     def _data(self) -> Path:
         if not self.directory.data_file.exists():
@@ -323,6 +329,8 @@ class RunFiles(Shown, Mapping[str, Result]):
             if lost := self.directory.record_lost:
                 lines.append(f"  warning: {lost}")
             lines += [f"  {line}" for line in work_words(self.provenance)]
+            if words := absorbed_words(self.provenance.get("absorbed")):
+                lines.append(f"  {words}")
             lines += [f"  warning: {words}" for words in self.provenance.get("warnings", ())]
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.so_far().values()]
         if self.ended and self.trajectory is not None:

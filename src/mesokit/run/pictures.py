@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case.case import Case
-from mesokit.case.component import require_known
+from mesokit.case.component import require_known, show
+from mesokit.errors import CaseError
 from mesokit.seam.result import Result
 
 if TYPE_CHECKING:  # it loads the libraries of pictures
@@ -48,3 +50,17 @@ def film(
 
     require_known(choices, [*CHOICES, "fps", "progress"])
     return animate(case, results, frames, path, kind, run=run, **choices)
+
+
+def site_images(case: Case, path: str | Path, pixels: int | None) -> dict[str, Any]:
+    """Writers of images of sites by the ending of the file. Raises CaseError for a wrong number of
+    pixels, or pixels of other files."""
+    from mesokit.report.flow.site_images import MOST_PIXELS, write
+
+    if pixels is None:
+        return {".png": write}
+    if not isinstance(pixels, int) or not 1 <= pixels <= MOST_PIXELS:
+        raise CaseError(f"pixels = {show(pixels)}: expected a whole number from 1 to {MOST_PIXELS}")
+    if Path(path).suffix != ".png":
+        raise CaseError(f"pixels = {show(pixels)}: only of sites in files .png; leave it out")
+    return {".png": partial(write, pixels=pixels)}

@@ -35,6 +35,7 @@ class Replica:
             observable.label: observable.accumulator(case) for observable in case.observe
         }
         self.seconds = dict.fromkeys(self.accumulators, 0.0)  # spent on samples
+        self._absorbed: float | None = None
 
     def go(self, legs: Iterable[Leg]) -> None:
         """Do steps and take samples."""
@@ -47,6 +48,13 @@ class Replica:
                 began = perf_counter()
                 self.accumulators[name].observe(self.engine)
                 self.seconds[name] += perf_counter() - began
+
+    @property
+    def absorbed(self) -> float | None:
+        """The time after which nothing can happen any more, as it was first seen, or None."""
+        if self._absorbed is None:
+            self._absorbed = method_of(self.case).absorbed(self.engine)
+        return self._absorbed
 
 
 class Replicas:
@@ -72,6 +80,13 @@ class Replicas:
     def step(self) -> int:
         """The step of all replicas."""
         return self.first.engine.step
+
+    @property
+    def absorbed(self) -> float | None:
+        """The time after which nothing can happen any more in any replica, or None."""
+        times = [one.absorbed for one in self.all]
+        known = [time for time in times if time is not None]
+        return max(known) if len(known) == len(times) else None
 
     def each(self, work: Callable[[Replica], Any]) -> None:
         """Call a function of each replica. Raises the first of their errors, with its seed."""

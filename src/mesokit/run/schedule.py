@@ -47,7 +47,7 @@ class Schedule:
         run, trajectory = self.case.run, self.case.trajectory
         stops = [self.warmup if step < self.warmup else self.last_step]
         if trajectory is not None and step >= self.warmup:
-            stops += self._after(step, [trajectory.every])
+            stops.append(self.warmup + trajectory.next_after(step - self.warmup))
         if run.checkpoint_every is not None:
             stops.append(step + run.checkpoint_every - step % run.checkpoint_every)
         return min(stops)
@@ -82,8 +82,8 @@ class Schedule:
 
     def frame_due(self, step: int) -> bool:
         """True if a frame of the trajectory is written at this step."""
-        trajectory, passed = self.case.trajectory, step - self.warmup
-        return trajectory is not None and passed >= 0 and passed % trajectory.every == 0
+        trajectory = self.case.trajectory
+        return trajectory is not None and trajectory.due(step - self.warmup)
 
     def checkpoint_due(self, step: int) -> bool:
         """True if a checkpoint is written at this step, independently of the clock."""

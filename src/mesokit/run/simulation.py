@@ -279,7 +279,8 @@ class Simulation(Shown):
         if self._folder is not None:
             self.checkpoint()
             work = shared_work(self.ranks, self.engine)
-            self._folder.end(self.results, {"timings": self.timings, "shared_work": work})
+            spent = {"timings": self.timings, "shared_work": work}
+            self._folder.end(self.results, spent | {"absorbed": self.replicas.absorbed})
 
     def reached(self, until: str) -> bool:
         """True if a number is known as well as `run(until=...)` needs. Raises CaseError."""

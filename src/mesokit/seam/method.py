@@ -128,6 +128,15 @@ class Plate(NamedTuple):
         return np.where(nearest, rest - self.shift, np.minimum(distance, rest - self.shift))
 
 
+def absorbed_words(time: float | None) -> str:
+    """A line on the time after which nothing can happen; "" while something can.
+
+    >>> absorbed_words(12.345678), absorbed_words(None)
+    ('after t = 12.3457 nothing can happen any more', '')
+    """
+    return "" if time is None else f"after t = {time:.6g} nothing can happen any more"
+
+
 class Steadiness(NamedTuple):
     """How far a run measures a steady state, as functions of a case.
 
@@ -205,6 +214,8 @@ class Method:
         What its units are in SI; without it, a case must not have the section `[units]`.
     steadiness : Steadiness, optional
         How far a run measures a steady state.
+    absorbed : function of an engine, optional
+        The time after which nothing can happen any more, None while something can.
     units : Units, optional
         What lengths, times and masses are counted in; unless said, the unit of the case.
     check_ranks : function of a case and a number of ranks, optional
@@ -230,6 +241,7 @@ class Method:
     log: Callable[[Case], Columns[Any]] = lambda case: NO_COLUMNS
     si: Callable[[Case], InSI] | None = None
     steadiness: Steadiness = STEADY
+    absorbed: Callable[[Any], float | None] = lambda engine: None
     units: Units = Units()  # noqa: RUF009  a tuple of names
     check_ranks: Callable[[Case, int], None] | None = None
 

@@ -62,7 +62,7 @@ class StudyReporter(Reporter):
         if not rate:
             return ended
         left = duration_text((self.total - step) / rate)
-        return f"{ended}, {rate / 1e6:.3g} M particle-steps/s, {left} left"
+        return f"{ended}, {rate / 1e6:.3g} M {self.what}-steps/s, {left} left"
 
 
 class NotebookStudyReporter(NotebookReporter, StudyReporter):
@@ -125,7 +125,8 @@ def drive(
         work.seen = work.run.step
     stopped: list[signal.Signals] = []
     failed: list[tuple[Planned, str]] = []
-    progress.start(sum(work.total for work in works), 1, "study", done + _seen(waiting))
+    total, noun = sum(work.total for work in works), waiting[0].run.files.case.noun
+    progress.start(total, 1, "study", done + _seen(waiting), noun)
     in_hand: list[_Work] = []
     looked = 0.0
     try:

@@ -8,23 +8,28 @@ from mesokit.case.case import Case
 from mesokit.case.trajectory import Group, Kind
 from mesokit.method.kinetic_monte_carlo.checks import check
 from mesokit.method.kinetic_monte_carlo.engine.engine import Events
+from mesokit.method.kinetic_monte_carlo.engine.events import TIME
 from mesokit.method.kinetic_monte_carlo.observe import LatticeObservable
 from mesokit.method.kinetic_monte_carlo.section import Sections
 from mesokit.method.kinetic_monte_carlo.start import files_of, first_state, sites_of
 from mesokit.method.kinetic_monte_carlo.summary import summary
 from mesokit.seam.method import Columns, InitialState, Method
+from mesokit.seam.units import Units
 
 
 def groups(case: Case) -> tuple[Group, ...]:
     """One group of sites."""
+    closed = tuple(axis in case.lattice.ends for axis in case.box.axes)
+    states = case.lattice.model.states()
+    usual = {1: "space-time" if states else "profiles", 3: "occupied"}
     return (
         Group(
             "sites",
             (Kind(1.0, sites_of(case)),),
             has=("site",),
-            picture="sites",
-            lattice=tuple(map(int, case.box.size)),
-            states=case.lattice.model.states(),
+            picture=usual.get(case.box.dimension, "sites"),
+            lattice=case.lattice.lattice.sites(tuple(map(int, case.box.size)), closed),
+            states=states,
         ),
     )
 
@@ -48,6 +53,14 @@ def columns(case: Case) -> Columns:
     return Columns((*names, "events"), ("events",), read)
 
 
+def absorbed(engine: Events) -> float | None:
+    """The time of the last event, if no other can follow; on sublattices, which have a time of
+    their own each, that of the step."""
+    if not engine.absorbed:
+        return None
+    return engine.time if engine.blocks is not None else float(engine.course.clock[TIME])
+
+
 METHOD = Method(
     name="kinetic-monte-carlo",
     sections=Sections,
@@ -60,4 +73,6 @@ METHOD = Method(
     initial=InitialState(first_state, Events.start, ("states",), files_of, "lattice.start.run"),
     engine=lambda case, threads, measures: Events(case, threads, measures),
     log=columns,
+    absorbed=absorbed,
+    units=Units(length="a"),  # the distance of neighbours
 )

@@ -14,7 +14,7 @@ from mesokit.report.document.record import citation, install, origin_rows, timin
 from mesokit.report.document.tables import changes, lines_of
 from mesokit.report.document.template import render
 from mesokit.report.finish.origin import as_text
-from mesokit.seam.method import Row, method_of, summary_of
+from mesokit.seam.method import Row, absorbed_words, method_of, summary_of
 from mesokit.seam.result import SUSPICIOUS, Result
 
 HEADINGS = {  # of the sections that a run may have, in the order of the page
@@ -113,18 +113,21 @@ def page(files: Files, path: Path, films: bool = False) -> str:
 def _lead(case: Case, record: Mapping[str, Any]) -> str:
     """The case in a line: method, size, particles, steps and seed."""
     size = " x ".join(f"{length:g}" for length in case.box.size)
-    particles = sum(group.number for group in case.groups)
+    number, noun = sum(group.number for group in case.groups), case.noun
+    of = f"lattice of {size} sites" if noun == "site" else f"box of {size} cells"
     merged, warmup = record.get("merged") or (), case.run.warmup
     steps = sum(run["step"] - warmup for run in merged) or case.run.steps
     words = [
-        f"{case.run.method}, box of {size} cells",
-        f"{particles:,} particles".replace(",", " "),
+        f"{case.run.method}, {of}",
+        f"{number:,} {noun}s".replace(",", " ") * (noun != "site"),
         f"{steps} steps" + " in all" * bool(merged) + f" after {warmup} of warm-up" * bool(warmup),
         pooled_words(record) or f"seed {case.run.seed}",
     ]
     if record.get("ended"):
         words.append(f"ended {when(record['ended'])}")
-    return ", ".join(words)
+    if still := absorbed_words(record.get("absorbed")):
+        words.append(still)
+    return ", ".join(filter(None, words))
 
 
 def _derived(case: Case) -> tuple[list[Row], tuple[str, ...]]:

@@ -113,9 +113,11 @@ class Flow:
     bonds: ends (m, 2, 2) of those between the `particles`, or None.
     spheres: at the end of the time, or None.
     headings: velocities (n, 2) of the `particles` along the two axes, or None.
-    sites: states (nx, ny) of the sites of a lattice at one time, or None.
-    states: their names, by number.
+    sites: states (nx, ny) of the sites of a lattice at one time, or deviations of their heights
+        from the mean, in bins that each show one site; or None.
+    states: their names, by number; none of heights.
     time: of the `particles`, where they have headings, and of the `sites`.
+    note: which of the `sites` are shown.
     """
 
     axes: tuple[str, str]
@@ -134,9 +136,10 @@ class Flow:
     bonds: Array | None = None
     spheres: Spheres | None = None
     headings: Array | None = None
-    sites: NDArray[np.integer[Any]] | None = None
+    sites: NDArray[Any] | None = None
     states: tuple[str, ...] = ()
     time: float = 0.0
+    note: str = ""
 
     @property
     def speed(self) -> Array:

@@ -13,21 +13,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import show
+from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
 from mesokit.report.caption import at
-from mesokit.report.finish.origin import origin_of
+from mesokit.report.finish.origin import Origin, origin_of
 from mesokit.report.finish.saving import foot_strip
 from mesokit.report.flow.beads import BeadFrames, frames_of
 from mesokit.report.flow.colouring import in_film
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
 from mesokit.report.flow.noise import averaged, note, smooth, smoothing
-from mesokit.report.flow.region import Region, View, frames_in, region_of
+from mesokit.report.flow.region import Region, View, frames_in, region_of, require_none
+from mesokit.report.flow.site_frames import PER_DECADE, geometric, require_spacing
+from mesokit.report.flow.site_kinds import SITE_KINDS, own_kind, site_picture
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, Source, choose_one, sources
 from mesokit.report.progress import FilmReporter, Reporter
+from mesokit.report.style import STYLE
 from mesokit.seam.in_units import of_case
 
 if TYPE_CHECKING:
@@ -103,6 +106,15 @@ def animate(
         raise CaseError(f"output = {show(str(path))}: expected a name that ends in .mp4 or .gif")
     if not isinstance(fps, numbers.Real) or not SLOWEST <= fps <= FASTEST:
         raise CaseError(f"fps = {show(fps)}: expected a number from {SLOWEST:g} to {FASTEST:g}")
+    require_spacing(view.time)
+    progress = progress or FilmReporter(quiet=True)
+    if (kind or own_kind(case)) in SITE_KINDS:
+        return _of_sites(
+            kind or str(own_kind(case)), case, trajectory, view, path, fps, progress, run
+        )
+    require_none(view, ("states",))
+    if kind is not None:
+        panels_of(kind, case, view.colour)
     seen = view._replace(colour=in_film(trajectory, view.colour))
     found = sources(case, results, trajectory, seen)
     kind = kind or usual(case, found, "speed", in_time=True)
@@ -111,20 +123,27 @@ def animate(
     frames = frames_in(source.time, view.window)
     whole = np.intersect1d(frames, source.whole)
     frames = whole if len(whole) else frames
-    section = Section(case, source.axes, view.at)
+    of_sites = any(panel.NEEDS == "sites" for panel in panels)
+    section = Section(case, source.axes, None if of_sites else view.at)
     first = source.flow(frames[:1])
     shown = region_of(view.region, first.axes, first.size)
     from mesokit.report.flow.canvas import Canvas
 
     number = _averaged(view.average, panels, source, frames, shown)
     means = np.lib.stride_tricks.sliding_window_view(frames, number)
+    if view.time == "log":
+        means = means[geometric(source.time[means[:, -1]], PER_DECADE)]
     some = np.unique(np.linspace(0, len(means) - 1, SCALED).astype(int))
     flows = [source.flow(mean) for mean in means[some]]
     width, clear = smoothing(panels, flows, shown)
     flows = [smooth(flow, width) for flow in flows]
     reaches = [max(panel.reach(flow, shown) for flow in flows) for panel in panels]
     how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
-    notes = [section.note(how), note(panels, flows[0], clear), legend_of(panels)]
+    notes = [
+        first.note if of_sites else section.note(how),
+        note(panels, flows[0], clear),
+        legend_of(panels),
+    ]
     notes += [f"flow: mean of {number} frames"] if number > 1 else []
     notes += [first.spheres.note] if first.spheres else []
     solutes = frames_of(case, trajectory, source.axes)
@@ -132,11 +151,23 @@ def animate(
         first = replace(first, beads=solutes.at(source.time[means[0][-1]]))
     drawn = Canvas(panels, [first] * len(panels), reaches, shown, section, True, notes)
     drawn.figure.set_dpi(DPI[ending])
-    progress = progress or FilmReporter(quiet=True)
     progress.start(len(means), case.particles, "drawing")
-    origin = origin_of(case, run)
-    foot = foot_strip(origin, drawn.figure.get_size_inches()[0], DPI[ending])
     pictures = _pictures(drawn, source, means, progress, width, solutes)
+    return _write(path, drawn.figure, pictures, len(means), fps, progress, origin_of(case, run))
+
+
+def _write(
+    path: Path,
+    figure: Any,
+    pictures: Iterator[Pixels],
+    number: int,
+    fps: float,
+    progress: Reporter,
+    origin: Origin,
+) -> Film:
+    """Write pictures of a figure into a file."""
+    ending = path.suffix.lower()
+    foot = foot_strip(origin, figure.get_size_inches()[0], DPI[ending])
     whole_pictures = (np.concatenate([picture, foot]) for picture in pictures)
     try:
         with replacing(path) as temporary:
@@ -144,7 +175,44 @@ def animate(
             ENCODERS[ending](temporary, whole_pictures, float(fps), origin.metadata(ending[1:]))
     finally:
         progress.finish()
-    return Film(path, len(means), float(fps))
+    return Film(path, number, float(fps))
+
+
+def _of_sites(
+    kind: str,
+    case: Case,
+    trajectory: TrajectoryReader | None,
+    view: View,
+    path: Path,
+    fps: float,
+    progress: Reporter,
+    run: str,
+) -> Film:
+    """Write a film of one of the kinds of pictures of sites. Raises CaseError for one that shows
+    all times in one picture."""
+    import matplotlib as mpl
+
+    if not SITE_KINDS[kind].MOVES:
+        moving = [name for name, each in SITE_KINDS.items() if each.MOVES]
+        raise CaseError(
+            f"kind = {show(kind)}: one picture of all times; expected {one_of(('sites', *moving))}"
+        )
+    drawn = site_picture(kind, case, trajectory, view)
+    rows = np.arange(len(drawn.frames))
+    if view.time == "log":
+        rows = geometric(drawn.frames.time, PER_DECADE)
+    drawn.figure.set_dpi(DPI[path.suffix.lower()])
+    progress.start(len(rows), case.particles, "drawing")
+
+    def pictures() -> Iterator[Pixels]:
+        for done, row in enumerate(rows, start=1):
+            with mpl.rc_context(STYLE):
+                drawn.show(int(row))
+                drawn.figure.canvas.draw()
+            yield np.asarray(drawn.figure.canvas.buffer_rgba())[..., :3]
+            progress.update(done)
+
+    return _write(path, drawn.figure, pictures(), len(rows), fps, progress, origin_of(case, run))
 
 
 def _averaged(

@@ -11,6 +11,8 @@ from mesokit.report.flow.data import Flow
 from mesokit.report.flow.maps import LINES, density, speed, vorticity
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
+from mesokit.report.flow.site_frames import lattice_group
+from mesokit.report.flow.site_kinds import SITE_KINDS, require_fitting
 from mesokit.report.flow.source import Found
 
 
@@ -48,6 +50,9 @@ KINDS: dict[str, tuple[Panel, ...]] = {
 }
 
 
+NAMES = (*KINDS, *SITE_KINDS)
+
+
 def legend_of(panels: Sequence[Panel]) -> str:
     """Meaning of lines in the panels that no bar of colours has."""
     return LINES if vorticity in panels else ""
@@ -60,6 +65,8 @@ def usual(case: Case, found: Found, first: str, in_time: bool) -> str:
     of these, whose refusal says what to add to the case.
     """
     own = case.groups[0].picture if case.groups else ""
+    if own in SITE_KINDS:
+        return own
     if own and own not in KINDS:
         raise CaseError(f"method {show(case.run.method)}: picture = {show(own)}: {_expected(own)}")
     wanted = [own or first, first, "speed", "density", "particles"]
@@ -73,7 +80,7 @@ def usual(case: Case, found: Found, first: str, in_time: bool) -> str:
 
 
 def _expected(kind: object) -> str:
-    return f"expected {one_of(list(KINDS))}{nearest(str(kind), list(KINDS))}"
+    return f"expected {one_of(NAMES)}{nearest(str(kind), NAMES)}"
 
 
 def panels_of(kind: str, case: Case, colour: str | None = None) -> tuple[Panel, ...]:
@@ -91,4 +98,7 @@ def panels_of(kind: str, case: Case, colour: str | None = None) -> tuple[Panel, 
             f"kind = {show(kind)}: particles of method {show(case.run.method)} have no size; "
             "expected 'particles', or another kind"
         )
+    group = lattice_group(case)
+    if group is not None:
+        require_fitting(kind, case, group)
     return KINDS[kind]

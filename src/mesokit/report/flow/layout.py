@@ -57,6 +57,11 @@ def page_width(width: float | None) -> Iterator[None]:
         _WIDTH.reset(before)
 
 
+def width_of_page() -> float:
+    """Width of a figure with one panel, in inches."""
+    return _WIDTH.get() or PAGE
+
+
 def layout(
     extent: tuple[float, float], bars: Sequence[bool], stamp: bool, lines: int = 0
 ) -> Layout:

@@ -19,7 +19,8 @@ class View(NamedTuple):
     """Which part of the box is shown: a region, a window of time, a plane and where it lies.
 
     `colour` says what the colours of spheres mean, `average` how many frames each picture of a film
-    is the mean of.
+    is the mean of. `states` are those of sites that are balls in space. `time` is "linear" or
+    "log": how the times of a film, or of profiles, are spaced.
     """
 
     region: Ranges | None = None
@@ -28,9 +29,18 @@ class View(NamedTuple):
     at: float | None = None
     colour: str | None = None
     average: int | None = None
+    states: Sequence[str] | None = None
+    time: str | None = None
 
 
 CHOICES = View._fields
+
+
+def require_none(view: View, choices: Sequence[str]) -> None:
+    """Raise CaseError for one of these choices, which this picture does not have."""
+    for choice in choices:
+        if (value := getattr(view, choice)) is not None:
+            raise CaseError(f"{choice} = {show(value)}: not with this kind; leave it out")
 
 
 @dataclass(frozen=True)

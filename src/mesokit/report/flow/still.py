@@ -15,7 +15,8 @@ from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
 from mesokit.report.flow.noise import note, smooth, smoothing
-from mesokit.report.flow.region import View, frames_in, region_of
+from mesokit.report.flow.region import View, frames_in, region_of, require_none
+from mesokit.report.flow.site_kinds import SITE_KINDS, own_kind, site_still
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, choose, sources
 from mesokit.report.flow.state import State
@@ -37,7 +38,8 @@ def picture(
     ----------
     case, results, trajectory: of the run; a `State` of its engine is a trajectory of one frame.
     kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity", "four", of
-        spheres "disks", of birds "flock"; unless said that of the method, else "four", or what the
+        spheres "disks", of birds "flock", of sites "sites", "space-time", "profiles", "heights" or
+        "occupied"; unless said that of the method, else "four", or what the
         run has kept enough for.
     choices: the rest.
     region: ((x0, x1), (y0, y1)) in cells, the whole box unless said.
@@ -46,6 +48,8 @@ def picture(
     at: where along the third axis solids are shown, in the middle unless said; of spheres those
         behind it.
     colour: of disks and spheres: "speed" (unless said), "spin", "neighbours", "psi6" or "kind".
+    states: names of those of kind "occupied"; all but the first unless said.
+    time: "log" for profiles at times whose ratios are alike, else "linear".
 
     Raises CaseError for a kind, region, window, axes or place that there is not, RunError where
     the run kept nothing to draw.
@@ -60,11 +64,17 @@ def picture(
     view = View(**choices)
     if view.average is not None:
         raise CaseError(f"average = {show(view.average)}: only of films; a picture has a window")
+    if (kind or own_kind(case)) in SITE_KINDS:
+        return site_still(kind or str(own_kind(case)), case, trajectory, view)
+    if kind is not None:
+        panels_of(kind, case, view.colour)
+    require_none(view, ("states", "time"))
     window, found = view.window, sources(case, results, trajectory, view)
     kind = kind or usual(case, found, "four", in_time=window is not None)
     panels = panels_of(kind, case, view.colour)
     chosen = [choose(found, panel.NEEDS, kind, window is not None) for panel in panels]
-    section = Section(case, chosen[0].axes, view.at)
+    of_sites = any(panel.NEEDS == "sites" for panel in panels)
+    section = Section(case, chosen[0].axes, None if of_sites else view.at)
     flows = [source.flow(frames_in(source.time, window)) for source in chosen]
     shown = region_of(view.region, flows[0].axes, flows[0].size)
     from mesokit.report.flow.canvas import Canvas
@@ -78,14 +88,19 @@ def picture(
     mean = _mean(averaged[0], window) if averaged else ""
     when = f"solutes at {at(beads.time, 4)}" if beads else ""
     how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
-    notes = [section.note(how), mean, note(panels, flows[0], clear), legend_of(panels)]
+    notes = [
+        flows[0].note if of_sites else section.note(how),
+        mean,
+        note(panels, flows[0], clear),
+        legend_of(panels),
+    ]
     notes += [_few(case, panels, flows), when]
     for spheres in filter(None, (flow.spheres for flow in flows)):
         notes += [f"at {at(spheres.time, 4)}", spheres.remark, spheres.note]
-    if any(panel.NEEDS in ("headings", "sites") for panel in panels):
+    if any(panel.NEEDS == "headings" for panel in panels):
         notes.append(f"at {at(flows[0].time, 6)}")
-    drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
-    drawn.show(flows)
+    drawn = Canvas(panels, flows, reaches, shown, section, of_sites, notes=notes)
+    drawn.show(flows, at(flows[0].time, 6) if of_sites else "")
     return drawn.figure
 
 

@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.sites import SiteLattice
+
 Steps = tuple[tuple[int, ...], ...]
 
 
@@ -52,15 +54,13 @@ class Kind(NamedTuple):
             ]
         )
 
-    def places(self, size: tuple[int, ...]) -> NDArray[np.float64]:
-        """Places (n, d) of all sites, by number, in distances of neighbours.
+    def sites(self, size: tuple[int, ...], closed: tuple[bool, ...] = ()) -> SiteLattice:
+        """A lattice of so many sites along each axis, which ends along some."""
+        return SiteLattice(size, self.spacing, self.parity, self.shift, closed)
 
-        >>> KINDS["triangular"].places((1, 2)).tolist()
-        [[0.0, 0.0], [0.5, 0.8660254037844386]]
-        """
-        whole = np.indices(size).reshape(len(size), -1).T
-        odd = (whole @ np.array(self.parity)) % 2
-        return whole * np.array(self.spacing) + odd[:, None] * np.array(self.shift)
+    def places(self, size: tuple[int, ...]) -> NDArray[np.float64]:
+        """Places (n, d) of all sites, by number, in distances of neighbours."""
+        return self.sites(size).places()
 
 
 def _bravais(*steps: tuple[int, ...]) -> Kind:

@@ -1,0 +1,52 @@
+"""Profiles of a surface above a chain: heights along x at several times."""
+
+import numpy as np
+
+from mesokit.report.flow.site_frames import PER_DECADE, SiteFrames, evenly, geometric
+from mesokit.report.flow.site_picture import SitePicture
+from mesokit.report.style import labelled
+
+LINES = 6  # times in one picture
+PALE, DARK = 0.3, 1.0  # of the colour map, from the first to the last time
+
+
+class Profiles(SitePicture):
+    """Heights at several times as steps, from pale to dark; in a film those of one time."""
+
+    OF, HEIGHTS, TALL = (1,), True, 0.62
+
+    def __init__(self, frames: SiteFrames) -> None:
+        super().__init__(frames)
+        self.ax = self.figure.subplots()
+        lattice = frames.lattice
+        self.edges = np.linspace(0, float(lattice.edges[0]), lattice.number + 1)
+        some = [frames.at(int(k)) for k in evenly(len(frames), LINES * LINES)]
+        low, high = min(h.min() for h in some), max(h.max() for h in some)
+        room = 0.05 * max(high - low, 1)
+        self.ax.set(xlim=(0, self.edges[-1]), ylim=(low - room, high + room))
+        self.ax.set_xlabel(labelled("x", "a"))
+        self.ax.set_ylabel(labelled("height $h$", "a"))
+
+    def still(self) -> None:
+        """Draw lines of several times, which a legend names from the last, the highest, down."""
+        frames = self.frames
+        wanted = evenly(len(frames), LINES)
+        if frames.view.time == "log":
+            every = geometric(frames.time, PER_DECADE)
+            wanted = every[evenly(len(every), LINES)]
+        from matplotlib import colormaps
+
+        shades = colormaps["cividis_r"](np.linspace(PALE, DARK, len(wanted)))
+        for row, colour in zip(wanted, shades, strict=True):
+            heights, title = frames.at(int(row)), frames.title(int(row))
+            self.ax.stairs(heights, self.edges, baseline=None, color=colour, lw=0.9, label=title)
+        handles, labels = self.ax.get_legend_handles_labels()
+        beside = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "borderaxespad": 0.0}
+        self.ax.legend(handles[::-1], labels[::-1], fontsize=8, handlelength=1.2, **beside)
+
+    def show(self, index: int) -> None:
+        for line in list(self.ax.patches):
+            line.remove()
+        heights = self.frames.at(index)
+        self.ax.stairs(heights, self.edges, baseline=None, color="black", lw=0.9)
+        self.ax.set_title(self.frames.title(index), fontsize=10)
