@@ -18,7 +18,12 @@ from mesokit.seam.method import Row, Summary
 
 SECONDS = 0.2e-6  # of a thread for an event, where the project measures (docs/benchmark.md)
 LONGEST = 1e10  # seconds: longer ones are not told apart
-EQUILIBRIUM = ("lattice-energy", "magnetisation")  # what theory expects in it alone
+EQUILIBRIUM = {  # what theory expects in it alone
+    "lattice-energy",
+    "magnetisation",
+    "site-correlation",
+    "site-structure-factor",
+}
 BYTES = 4  # of memory for each site: its state, its surroundings and its class
 
 

@@ -1,0 +1,74 @@
+"""Which theory of correlations, islands, surfaces and currents belongs to a case on a lattice."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.case import Case
+from mesokit.method.kinetic_monte_carlo.expected import langmuir
+from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
+from mesokit.method.kinetic_monte_carlo.model.ising import Ising
+from mesokit.method.kinetic_monte_carlo.start import sites_of
+
+Array = NDArray[np.floating[Any]]
+Curve = tuple[Array | None, str]  # values where theory is known, and a note on it
+UNKNOWN: Curve = (None, "")
+LONG = 10  # correlation lengths in a lattice whose correlations are as in an infinite one
+MOST_ROWS = 64  # of determinants, the time of which grows as the fourth power
+
+
+def plain_spins(case: Case, kind: str) -> bool:
+    """Whether spins that flip in no field are on a periodic lattice of a kind, in equilibrium."""
+    model = case.lattice.model
+    return (
+        type(model) is Ising
+        and case.lattice.kind == kind
+        and not case.lattice.ends
+        and model.field == 0
+        and model.kT > 0
+    )
+
+
+def ring_of_particles(case: Case) -> bool:
+    """Whether particles hop on a ring: all states with as many particles are as likely."""
+    return isinstance(case.lattice.model, Exclusion) and not case.lattice.ends
+
+
+def correlation(case: Case, observable: Any, distance: Array) -> Curve:
+    """Correlation of two sites at a distance."""
+    model, n = case.lattice.model, sites_of(case)
+    if plain_spins(case, "chain"):
+        return theory.chain_correlation(distance, model.coupling, model.kT, n), "a ring of spins"
+    alike = np.where(distance < 0.5, 1.0, 0.0)
+    if not math.isnan(langmuir(case)):
+        return alike, "independent sites"
+    if ring_of_particles(case):
+        return np.where(alike > 0, alike, -1 / (n - 1)), "all states alike"
+    if plain_spins(case, "square") and observable.direction != "radius" and model.coupling > 0:
+        length = theory.spin_correlation_length(model.coupling, model.kT)
+        if min(case.box.size) < LONG * length:
+            return UNKNOWN
+        known = np.full(len(distance), np.nan)
+        square = theory.yang_magnetisation(model.coupling, model.kT) ** 2
+        for k, r in enumerate(distance[:MOST_ROWS]):
+            together = theory.row_correlation(int(r), model.coupling, model.kT)
+            known[k] = (together - square) / (1 - square)
+        return known, "approximate: " * (square > 0) + "an infinite lattice (Montroll et al. 1963)"
+    return UNKNOWN
+
+
+def structure_factor(case: Case, observable: Any, k: Array) -> Curve:
+    """Structure factor at wave numbers that fit into the lattice."""
+    n = sites_of(case)
+    if not math.isnan(langmuir(case)):
+        return np.ones(len(k)), "independent sites"
+    if case.lattice.kind == "chain" and (plain_spins(case, "chain") or ring_of_particles(case)):
+        known, note = correlation(case, observable, np.minimum(np.arange(n), n - np.arange(n)))
+        waves = np.rint(k * n / (2 * math.pi)).astype(int)
+        return np.fft.fft(np.asarray(known)).real[waves], note
+    return UNKNOWN
