@@ -80,18 +80,26 @@ def draw_path(result: Result, ax: Any) -> None:
     legend_above(ax)
 
 
-def draw_roughness(result: Result, ax: Any) -> None:
-    """A width in time on logarithmic axes, with a band of one standard error, and theory."""
+def draw_growth(result: Result, ax: Any) -> None:
+    """Numbers in time on logarithmic axes, with bands of one standard error, and theory."""
     time = np.asarray(result.x["time"], float)
-    use = (time > 0) & (result.value > 0)
-    value, error = result.value[use], result.error[use]
-    band = {"color": COLOURS[0], "alpha": 0.25, "lw": 0, "label": "one standard error"}
-    ax.fill_between(time[use], np.maximum(value - error, 0.1 * value), value + error, **band)
-    ax.plot(time[use], value, color=COLOURS[0], lw=1, label="measured", zorder=2)
-    if result.expected is not None:
-        look: Any = {"color": "black", "lw": 1.2, "ls": "--", "zorder": 3}
-        ax.plot(time[use], result.expected[use], label=theory_of(result), **look)
-    if use.any():
+    names = result.x[list(result.x)[1]] if result.value.ndim == 2 else ("",)
+    columns, bars = (np.reshape(array, (len(time), -1)) for array in (result.value, result.error))
+    for k, name in enumerate(names[:SHOWN]):
+        use = (time > 0) & (columns[:, k] > 0)
+        value, error = columns[use, k], bars[use, k]
+        band = {"color": COLOURS[k], "alpha": 0.25, "lw": 0}
+        label = "one standard error" if k == 0 and np.isfinite(error).any() else None
+        low = np.maximum(value - error, 0.1 * value)
+        ax.fill_between(time[use], low, value + error, label=label, **band)
+        words = f"measured by {name}" if name else "measured"
+        ax.plot(time[use], value, LINES[k], color=COLOURS[k], lw=1, label=words, zorder=2)
+        if result.expected is not None:
+            wanted = np.reshape(result.expected, (len(time), -1))[use, k]
+            look: Any = {"color": "black", "lw": 1.2, "ls": "--", "zorder": 3}
+            if np.isfinite(wanted).any():
+                ax.plot(time[use], wanted, label=theory_of(result), **look)
+    if ax.lines and any(len(line.get_xdata()) for line in ax.lines):
         ax.set(xscale="log", yscale="log")
         sparse_logarithm(ax.xaxis, *ax.get_xlim())
         sparse_logarithm(ax.yaxis, *ax.get_ylim())

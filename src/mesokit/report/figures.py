@@ -45,7 +45,7 @@ ONE_PANEL: dict[str, Callable[[Result, Any], None]] = {
     "structure factor": curve.draw_structure_factor,
     "number fluctuations": curve.draw_number_fluctuations,
     "cooling": curve.draw_cooling,
-    "roughness": curve.draw_roughness,
+    "growth": curve.draw_growth,
     "path": curve.draw_path,
     "centreline": profile.draw_wake,
     "histogram": histogram.draw,

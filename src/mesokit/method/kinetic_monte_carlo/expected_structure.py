@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.case import Case
-from mesokit.method.kinetic_monte_carlo.expected import langmuir
+from mesokit.method.kinetic_monte_carlo.expected import Known, langmuir
 from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
-from mesokit.method.kinetic_monte_carlo.start import sites_of
+from mesokit.method.kinetic_monte_carlo.model.potts import Potts
+from mesokit.method.kinetic_monte_carlo.model.table import TableModel
+from mesokit.method.kinetic_monte_carlo.start import RandomStart, sites_of
 
 Array = NDArray[np.floating[Any]]
 Curve = tuple[Array | None, str]  # values where theory is known, and a note on it
@@ -72,3 +74,61 @@ def structure_factor(case: Case, observable: Any, k: Array) -> Curve:
         waves = np.rint(k * n / (2 * math.pi)).astype(int)
         return np.fft.fft(np.asarray(known)).real[waves], note
     return UNKNOWN
+
+
+def walls_in_equilibrium(case: Case) -> float:
+    """Unlike pairs of neighbours per site in equilibrium: 0 where they are not known."""
+    model = case.lattice.model
+    if not plain_spins(case, "square") or model.coupling <= 0:
+        return 0.0
+    if not orders(case):
+        return 0.0
+    return 1 + 0.5 * theory.onsager_energy(model.coupling, model.kT) / model.coupling
+
+
+def orders(case: Case) -> bool:
+    """Whether the spins of a square lattice are below their critical temperature."""
+    model = case.lattice.model
+    states, alike = (2, 2.0) if isinstance(model, Ising) else (model.q, 1.0)
+    critical, _ = theory.potts_critical_energy(alike * model.coupling, states)
+    return bool(case.lattice.kind == "square" and model.kT < critical)
+
+
+def domain_length(case: Case, time: Array) -> Curve:
+    """Sites over walls of a chain that is quenched to temperature 0."""
+    model, start = case.lattice.model, case.lattice.first()
+    quenched = (
+        type(model) is Ising
+        and case.lattice.kind == "chain"
+        and not case.lattice.ends
+        and model.kT == model.field == 0
+        and model.coupling > 0
+        and model.dynamics == "glauber"
+    )
+    if not quenched or not isinstance(start, RandomStart) or set(start.fractions) - {0.5}:
+        return UNKNOWN
+    return 1 / theory.glauber_walls(model.attempt_rate * time), "Glauber 1963"
+
+
+def domain_exponent(case: Case) -> Known:
+    """Exponent of the length of domains in time, while that is shorter than the lattice."""
+    model = case.lattice.model
+    if not isinstance(model, Ising | Potts) or not model.coupling > 0:
+        return math.nan, ""
+    if getattr(model, "field", 0.0) or (model.kT > 0 and not orders(case)):
+        return math.nan, ""
+    if keeps_states(model):
+        return 1 / 3, "approximate: approaches 1/3 (Lifshitz and Slyozov 1961)"
+    return 0.5, "approximate: driven by curvature (Allen and Cahn 1979), at late times"
+
+
+def keeps_states(model: Any) -> bool:
+    """Whether no event changes how many sites are in each state."""
+    return isinstance(model, TableModel) and all(
+        one.neighbour is not None
+        and all(
+            sorted((one.site[0], there)) == sorted((one.site[1], one.neighbour[1]))
+            for there in one.neighbour[0]
+        )
+        for one in model.processes()
+    )
