@@ -138,6 +138,17 @@ def draw_structure_factor(result: Result, ax: Any) -> None:
         ax.set_ylim(bottom=0)
 
 
+def draw_logarithmic(result: Result, ax: Any) -> None:
+    """Values over the first coordinate on logarithmic axes, without those that are not above 0."""
+    draw(result, ax)
+    seen = result.value[np.isfinite(result.value) & (result.value > 0)]
+    if len(seen):
+        ax.set(xscale="log", yscale="log")
+        ax.set_ylim(0.5 * seen.min(), 2 * seen.max())
+        sparse_logarithm(ax.xaxis, *ax.get_xlim())
+        sparse_logarithm(ax.yaxis, *ax.get_ylim())
+
+
 def draw_number_fluctuations(result: Result, ax: Any) -> None:
     """Fluctuations of numbers over their means, birds at random, and the power of large ordered
     flocks in these."""

@@ -46,6 +46,7 @@ ONE_PANEL: dict[str, Callable[[Result, Any], None]] = {
     "number fluctuations": curve.draw_number_fluctuations,
     "cooling": curve.draw_cooling,
     "growth": curve.draw_growth,
+    "logarithmic": curve.draw_logarithmic,
     "path": curve.draw_path,
     "centreline": profile.draw_wake,
     "histogram": histogram.draw,

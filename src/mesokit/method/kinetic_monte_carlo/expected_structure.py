@@ -15,7 +15,7 @@ from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.potts import Potts
 from mesokit.method.kinetic_monte_carlo.model.table import TableModel
-from mesokit.method.kinetic_monte_carlo.start import RandomStart, sites_of
+from mesokit.method.kinetic_monte_carlo.start import RandomStart, UniformStart, sites_of
 
 Array = NDArray[np.floating[Any]]
 Curve = tuple[Array | None, str]  # values where theory is known, and a note on it
@@ -132,3 +132,31 @@ def keeps_states(model: Any) -> bool:
         )
         for one in model.processes()
     )
+
+
+def island_density(case: Case, observable: Any, coverage: Array) -> Curve:
+    """Islands per site, by the share p of the sites covered: of a chain of independent sites those
+    of m sites and more are (1 - p) p^m, whatever p is."""
+    alone = isinstance(case.lattice.first(), UniformStart | RandomStart)
+    if not alone or case.lattice.kind != "chain" or math.isnan(langmuir(case)):
+        return UNKNOWN
+    return (1 - coverage) * coverage**observable.smallest, "independent sites, a long chain"
+
+
+def island_sizes(case: Case, observable: Any, edges: Array) -> Curve:
+    """Islands of each size per site, a mean over each bin of sizes, on a chain in equilibrium."""
+    n, one = sites_of(case), np.arange(1, int(edges[-1]))
+    if case.lattice.kind != "chain" or case.lattice.ends:
+        return UNKNOWN
+    p = langmuir(case)
+    if not math.isnan(p):
+        full = p if observable.state in (None, case.lattice.model.states()[1]) else 1 - p
+        known, note = (1 - full) ** 2 * full**one, "independent sites, a long chain"
+    elif plain_spins(case, "chain"):
+        wall = 0.5 * (1 - math.tanh(case.lattice.model.coupling / case.lattice.model.kT))
+        known, note = 0.5 * wall**2 * (1 - wall) ** (one - 1), "a long chain of spins"
+    else:
+        return UNKNOWN
+    if known[n // 2 :].sum() > 1e-9:  # islands as long as the ring
+        return UNKNOWN
+    return np.add.reduceat(known, edges[:-1].astype(int) - 1) / np.diff(edges), note
