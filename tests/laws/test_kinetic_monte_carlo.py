@@ -21,7 +21,7 @@ from mesokit.method.kinetic_monte_carlo.observe.magnetisation import Magnetisati
 from mesokit.method.kinetic_monte_carlo.observe.roughness import Roughness
 from mesokit.method.kinetic_monte_carlo.observe.site_profile import SiteProfile
 from mesokit.method.kinetic_monte_carlo.start import AlternatingStart, RandomStart, UniformStart
-from tests.helpers.lattices import lattice_case, lattice_engine
+from tests.helpers.lattices import lattice_case, lattice_engine, near, results_of
 
 UNLIKELY = 1e-4
 CRITICAL = 2 / np.log(1 + 2**0.5)
@@ -36,19 +36,6 @@ def two_states():
             GasProcess(name="desorb", site="A -> empty", rate=KEEP),
         ],
     )
-
-
-def results_of(case):
-    simulation = Simulation(case)
-    simulation.run()
-    return simulation.results
-
-
-def near(comparisons):
-    """Names of those comparisons that theory is known for, all of which must agree."""
-    known = [one for one in comparisons if np.isfinite(one.expected) and np.isfinite(one.deviation)]
-    assert {one.what: one.deviation for one in known if abs(one.deviation) > 4} == {}
-    return {one.what for one in known}
 
 
 def test_waiting_times_are_exponential_with_the_rate_of_all_events():

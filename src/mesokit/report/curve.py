@@ -80,18 +80,26 @@ def draw_path(result: Result, ax: Any) -> None:
     legend_above(ax)
 
 
-def draw_roughness(result: Result, ax: Any) -> None:
-    """A width in time on logarithmic axes, with a band of one standard error, and theory."""
+def draw_growth(result: Result, ax: Any) -> None:
+    """Numbers in time on logarithmic axes, with bands of one standard error, and theory."""
     time = np.asarray(result.x["time"], float)
-    use = (time > 0) & (result.value > 0)
-    value, error = result.value[use], result.error[use]
-    band = {"color": COLOURS[0], "alpha": 0.25, "lw": 0, "label": "one standard error"}
-    ax.fill_between(time[use], np.maximum(value - error, 0.1 * value), value + error, **band)
-    ax.plot(time[use], value, color=COLOURS[0], lw=1, label="measured", zorder=2)
-    if result.expected is not None:
-        look: Any = {"color": "black", "lw": 1.2, "ls": "--", "zorder": 3}
-        ax.plot(time[use], result.expected[use], label=theory_of(result), **look)
-    if use.any():
+    names = result.x[list(result.x)[1]] if result.value.ndim == 2 else ("",)
+    columns, bars = (np.reshape(array, (len(time), -1)) for array in (result.value, result.error))
+    for k, name in enumerate(names[:SHOWN]):
+        use = (time > 0) & (columns[:, k] > 0)
+        value, error = columns[use, k], bars[use, k]
+        band = {"color": COLOURS[k], "alpha": 0.25, "lw": 0}
+        label = "one standard error" if k == 0 and np.isfinite(error).any() else None
+        low = np.maximum(value - error, 0.1 * value)
+        ax.fill_between(time[use], low, value + error, label=label, **band)
+        words = f"measured by {name}" if name else "measured"
+        ax.plot(time[use], value, LINES[k], color=COLOURS[k], lw=1, label=words, zorder=2)
+        if result.expected is not None:
+            wanted = np.reshape(result.expected, (len(time), -1))[use, k]
+            look: Any = {"color": "black", "lw": 1.2, "ls": "--", "zorder": 3}
+            if np.isfinite(wanted).any():
+                ax.plot(time[use], wanted, label=theory_of(result), **look)
+    if ax.lines and any(len(line.get_xdata()) for line in ax.lines):
         ax.set(xscale="log", yscale="log")
         sparse_logarithm(ax.xaxis, *ax.get_xlim())
         sparse_logarithm(ax.yaxis, *ax.get_ylim())
@@ -128,6 +136,17 @@ def draw_structure_factor(result: Result, ax: Any) -> None:
         sparse_logarithm(ax.yaxis, *ax.get_ylim())
     else:
         ax.set_ylim(bottom=0)
+
+
+def draw_logarithmic(result: Result, ax: Any) -> None:
+    """Values over the first coordinate on logarithmic axes, without those that are not above 0."""
+    draw(result, ax)
+    seen = result.value[np.isfinite(result.value) & (result.value > 0)]
+    if len(seen):
+        ax.set(xscale="log", yscale="log")
+        ax.set_ylim(0.5 * seen.min(), 2 * seen.max())
+        sparse_logarithm(ax.xaxis, *ax.get_xlim())
+        sparse_logarithm(ax.yaxis, *ax.get_ylim())
 
 
 def draw_number_fluctuations(result: Result, ax: Any) -> None:

@@ -86,11 +86,13 @@ from mesokit.theory.imperfect_gas import lennard_jones_tail as lennard_jones_tai
 from mesokit.theory.imperfect_gas import second_virial as second_virial
 from mesokit.theory.inelastic_collapse import collapse_restitution as collapse_restitution
 from mesokit.theory.inelastic_collapse import elastic_share as elastic_share
+from mesokit.theory.ising import chain_correlation as chain_correlation
 from mesokit.theory.ising import chain_energy as chain_energy
 from mesokit.theory.ising import counted_spins as counted_spins
 from mesokit.theory.ising import glauber_walls as glauber_walls
 from mesokit.theory.ising import onsager_energy as onsager_energy
 from mesokit.theory.ising import potts_critical_energy as potts_critical_energy
+from mesokit.theory.ising import row_correlation as row_correlation
 from mesokit.theory.ising import spin_correlation_length as spin_correlation_length
 from mesokit.theory.ising import yang_magnetisation as yang_magnetisation
 from mesokit.theory.kolmogorov import kolmogorov_onset_time as kolmogorov_onset_time

@@ -36,7 +36,12 @@ WORDS = {
     "linear": "by a walk over all sites",
 }
 LONGEST = 1e10  # seconds: longer ones are not told apart
-EQUILIBRIUM = ("lattice-energy", "magnetisation")  # what theory expects in it alone
+EQUILIBRIUM = {  # what theory expects in it alone
+    "lattice-energy",
+    "magnetisation",
+    "site-correlation",
+    "site-structure-factor",
+}
 LENGTHS = 6  # correlation lengths that a box should have along each axis
 BYTES = 4  # of memory for each site: its state, its surroundings and its class
 

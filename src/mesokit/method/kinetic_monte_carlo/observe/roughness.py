@@ -12,14 +12,18 @@ from mesokit.case.component import component, name_of, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.expected import growth_exponent, width
 from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
+from mesokit.method.kinetic_monte_carlo.observe.shared.parts import (
+    PARTS,
+    check_parts,
+    in_parts,
+    late_exponent,
+    of_parts,
+)
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import TimeSeries
 
-PARTS = 16  # of the lattice along x, whose scatter is the error
-FEWEST = 10  # points of a fit
 FLAT = 0.01  # of the last mean square width: a first one below is flat
-DECADE = 10.0  # the last times of a run, over which the exponent is fitted
 
 
 @component
@@ -31,7 +35,7 @@ class Roughness(LatticeObservable):
     """
 
     quantity: Literal["roughness"] = tag("roughness")
-    drawing, value_label = "roughness", "width"
+    drawing, value_label = "growth", "width"
     units: ClassVar[dict[str, str]] = {"time": "tau", "value": "a"}
 
     def check(self, case: Case) -> None:
@@ -41,8 +45,7 @@ class Roughness(LatticeObservable):
             raise CaseError(
                 f"model {show(name_of(case.lattice.model))} has no heights; leave it out"
             )
-        if case.box.size[0] < PARTS:
-            raise CaseError(f"box.size: expected at least {PARTS} sites along x")
+        check_parts(case)
 
 
 @accumulator_of(Roughness)
@@ -58,13 +61,11 @@ class RoughnessAccumulator(BlockAccumulator):
         heights = engine.sites().astype(float)
         mean = heights.mean()
         rows = ((heights - mean) ** 2).reshape(int(self.case.box.size[0]), -1).mean(axis=1)
-        edges = np.linspace(0, len(rows), PARTS + 1).astype(int)
-        parts = np.add.reduceat(rows, edges[:-1]) * (PARTS / len(rows))
-        self.series.add(engine.time, [mean, *parts])
+        self.series.add(engine.time, [mean, *in_parts(rows)])
 
     def result(self) -> Result:
         time, rows = self.series.time(), self.series.values()
-        square, error = _mean(rows[:, 1:])
+        square, error = of_parts(rows[:, 1:])
         value = np.sqrt(square)
         expected, note = width(self.case, time, float(square[0]) if len(time) else 0.0)
         return self.report(
@@ -82,31 +83,13 @@ class RoughnessAccumulator(BlockAccumulator):
             return
         speed = (rows[-1, 0] - rows[len(rows) // 2, 0]) / (time[-1] - time[len(rows) // 2])
         yield Comparison("speed of growth", speed, math.nan, unit="1/time", note="second half")
-        late = (time > time[-1] / DECADE) & (rows[:, 1:].min(axis=1) > 0)
         first, last = rows[0, 1:].mean(), rows[-1, 1:].mean()
         known, note = growth_exponent(self.case)
         if first > FLAT * last:
             known, note = math.nan, "no theory: the first sample is not flat"
-        if late.sum() >= FEWEST:
-            exponents = [_exponent(time[late], rows[late, 1:])]
-            for k in range(PARTS):  # without one part each (jackknife)
-                exponents.append(_exponent(time[late], np.delete(rows[late, 1:], k, axis=1)))
-            error = math.sqrt((PARTS - 1) * float(np.var(exponents[1:])))
-            yield Comparison("growth exponent", exponents[0], error, known, "", note)
-        square, errors = _mean(rows[-1:, 1:])
+        if (found := late_exponent(time, rows[:, 1:], 0.5)) is not None:
+            yield Comparison("growth exponent", *found, known, "", note)
+        square, errors = of_parts(rows[-1:, 1:])
         expected, note = width(self.case, time[[0, -1]], float(first))
         known = float(expected[1] ** 2) if expected is not None else math.nan
         yield Comparison("last mean square width", square[0], errors[0], known, "a^2", note)
-
-
-def _mean(parts: NDArray) -> tuple[NDArray, NDArray]:
-    """Mean over parts of the lattice, and its standard error."""
-    return parts.mean(axis=1), parts.std(axis=1, ddof=1) / math.sqrt(parts.shape[1])
-
-
-def _exponent(time: NDArray, parts: NDArray) -> float:
-    """Slope of the logarithm of the width over that of time, with equal weights of equal ratios of
-    times."""
-    x, y = np.log(time), 0.5 * np.log(parts.mean(axis=1))
-    weight = np.sqrt(np.gradient(x)) if len(x) > 1 else np.ones(1)
-    return float(np.polyfit(x, y, 1, w=weight)[0])
