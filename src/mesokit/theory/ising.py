@@ -159,22 +159,6 @@ def row_correlation(distance: int, coupling: float, kT: float) -> float:
     return float(np.linalg.det(toeplitz(elements[rows], elements[-rows])))
 
 
-def spin_correlation_length(coupling: float, kT: float) -> float:
-    """Correlation length of an infinite square lattice along a row, in no field.
-
-    Parameters: `coupling` J, above 0; `kT`. 1/(ln coth K - 2K) above the critical temperature with
-    K = J/kT, and 1/(2 (2K - ln coth K)) below; infinite at it. Raises ValueError unless both are
-    above 0. Source: L. Onsager, Phys. Rev. 65, 117 (1944).
-
-    >>> round(spin_correlation_length(1.0, 3.0), 4)
-    2.1365
-    """
-    positive(coupling=coupling, kT=kT)
-    K = coupling / kT
-    inverse = math.log(1 / math.tanh(K)) - 2 * K
-    return math.inf if inverse == 0 else 1 / inverse if inverse > 0 else -0.5 / inverse
-
-
 def glauber_walls(time: ArrayLike) -> NDArray[np.float64]:
     """Part of the bonds of a chain that join unlike spins, after a quench to temperature 0.
 

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.case import Case
-from mesokit.method.kinetic_monte_carlo.expected import Known, langmuir
+from mesokit.method.kinetic_monte_carlo.expected import Known, coverages
 from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
+from mesokit.method.kinetic_monte_carlo.model.lattice_gas import LatticeGas
 from mesokit.method.kinetic_monte_carlo.model.potts import Potts
 from mesokit.method.kinetic_monte_carlo.model.table import TableModel
 from mesokit.method.kinetic_monte_carlo.start import RandomStart, UniformStart, sites_of
@@ -22,6 +23,14 @@ Curve = tuple[Array | None, str]  # values where theory is known, and a note on 
 UNKNOWN: Curve = (None, "")
 LONG = 10  # correlation lengths in a lattice whose correlations are as in an infinite one
 MOST_ROWS = 64  # of determinants, the time of which grows as the fourth power
+
+
+def langmuir(case: Case) -> float:
+    """Part of the sites that have a particle where sites are independent, nan where not."""
+    model = case.lattice.model
+    if not isinstance(model, LatticeGas):
+        return math.nan
+    return coverages(case).get(model.species[-1], (math.nan, ""))[0]
 
 
 def plain_spins(case: Case, kind: str) -> bool:
@@ -52,7 +61,7 @@ def correlation(case: Case, observable: Any, distance: Array) -> Curve:
     if ring_of_particles(case):
         return np.where(alike > 0, alike, -1 / (n - 1)), "all states alike"
     if plain_spins(case, "square") and observable.direction != "radius" and model.coupling > 0:
-        length = theory.spin_correlation_length(model.coupling, model.kT)
+        length = theory.spin_correlation_length(model.coupling, model.kT, 2)
         if min(case.box.size) < LONG * length:
             return UNKNOWN
         known = np.full(len(distance), np.nan)

@@ -79,7 +79,8 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         *_rows(case, total),
         ("time of the run", number(time, "time"), f"{steps} slices"),
         ("events", f"{number(usual)} to {number(most)}" if total else f"< {number(most)}", note),
-        ("run time", f"{shortest} to {longest}" if total else f"< {longest}", threads_text(at_once)),
+        ("run time", f"{shortest} to {longest}" if total else f"< {longest}",
+         threads_text(at_once)),
         ("memory", size_text(memory), "estimate"),
     ]  # fmt: skip
     if given.sublattices is not None:

@@ -268,7 +268,7 @@ def _find_highest(classes, own, c):
     highest, begin = 1, classes.first[own + c]
     for k in range(classes.lengths[own + c]):
         tile = np.int64(classes.lists[begin + k])
-        highest = max(highest, np.int64(classes.counts[tile * len(classes.rates) + c]))
+        highest = max(highest, int(classes.counts[tile * len(classes.rates) + c]))
     classes.highest[own + c] = highest
     classes.refused[own + c] = 0
     return highest

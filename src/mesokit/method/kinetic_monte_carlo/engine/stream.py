@@ -1,5 +1,6 @@
-"""Further random numbers of an event, from one random word: how many it takes is not known, and they
-cost less than those by counter (Steele, Lea and Flood 2014, SplitMix64).
+"""Further random numbers of an event, as many as it takes, from one random word.
+
+They cost less than those by counter (Steele, Lea and Flood 2014, SplitMix64).
 """
 
 import numpy as np

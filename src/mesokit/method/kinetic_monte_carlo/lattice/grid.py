@@ -54,7 +54,7 @@ def grid_of(kind: Kind, size: tuple[int, ...], closed: tuple[bool, ...]) -> Grid
     within = np.indices(sides).reshape(len(size), -1).T  # (256, d), by place in the tile
     odd = (within @ np.array(kind.parity)) % 2  # sides are even: the parity is that of the lattice
     jumps = [
-        _jumps(grid, np.array(sides) * tile + within, kind.shifts[odd], closed)
+        _jumps(grid, np.array(sides) * np.array(tile) + within, kind.shifts[odd], closed)
         for tile in itertools.product(*samples)
     ]
     nth = np.zeros(tiles, np.int64)
@@ -73,11 +73,12 @@ def _jumps(
     neighbours, d)."""
     size = np.array(grid.size)
     there = r[:, None, :] + steps
-    missing = (((there < 0) | (there >= size)) & np.array(closed)).any(axis=-1)
+    outside = (there < 0) | (there >= size)
+    missing = np.any(outside & np.array(closed), axis=-1)
     jump = places(grid, there % size) - places(grid, r)[:, None]
     lowest = np.iinfo(grid.jumps.dtype).min
     # places beyond the end of the lattice hold no sites: their jumps are never taken
-    return np.where(missing | (r >= size).any(axis=-1)[:, None], lowest, jump).ravel()
+    return np.where(missing | np.any(r >= size, axis=-1, keepdims=True), lowest, jump).ravel()
 
 
 def places(grid: Grid, r: NDArray[np.int64]) -> NDArray[np.int64]:

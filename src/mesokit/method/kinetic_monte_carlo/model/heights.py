@@ -175,7 +175,7 @@ def _(model, sites, i, u):
     for p in range(len(model.site)):
         share = model.of.shares[U(row + p)]
         if share > 0.0 and model.of.fits[U(p)] == 0:
-            last, chosen, rate, left = p, np.int64(-1), share, left - share
+            last, chosen, rate, left = np.int64(p), np.int64(-1), share, left - share
         elif share > 0.0:
             fitting = np.uint64(0)  # a bit for each direction with a neighbour that takes part
             for direction in range(sites.grid.neighbours):
@@ -186,7 +186,7 @@ def _(model, sites, i, u):
             number = np.int64(bits_set(fitting))
             if number > 0:
                 rank = min(np.int64(left / share), number - 1)
-                last, chosen, rate = p, np.int64(nth_bit(fitting, rank)), share
+                last, chosen, rate = np.int64(p), np.int64(nth_bit(fitting, rank)), share
                 target, left = neighbour(sites.grid, i, chosen), left - number * share
         if left < 0.0:
             break
@@ -208,8 +208,7 @@ def _(model, sites, i, u):
             if j >= 0 and np.int64(sites.states[j]) == lowest:
                 ties += 1
         if not here:
-            rank = int((left / rate + 1.0) * ties)
-            rank = rank if rank < ties else ties - 1
+            rank = np.int64(min(int((left / rate + 1.0) * ties), ties - 1))
             for direction in range(sites.grid.neighbours):
                 j = neighbour(sites.grid, i, direction)
                 if j >= 0 and np.int64(sites.states[j]) == lowest:

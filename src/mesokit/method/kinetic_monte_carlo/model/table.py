@@ -141,8 +141,9 @@ class Rates(NamedTuple):
     begin: (states + 1,) first process of each state. first: (states,) number of surroundings with
     each state. bits: of a state, or that of a neighbour, in an index. weights: by direction, state
     of the neighbour and of the site. own: by two states of a site, the difference of `first`, or
-    UNLIKE where weights differ too. rates: (m,) of all processes. shares: (m * processes,), for each neighbour that takes part. fits: (processes,) a bit for each state of a neighbour that
-    may take part, 0 without a neighbour. towards: a bit for each direction.
+    UNLIKE where weights differ too. rates: (m,) of all processes together. shares: (m *
+    processes,), for each neighbour that takes part. fits: (processes,) a bit for each state of a
+    neighbour that may take part, 0 without a neighbour. towards: a bit for each direction.
     """
 
     begin: NDArray[np.int64]
@@ -200,10 +201,10 @@ def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, e
     bits = int(max(states - 1, others)).bit_length()
     padded = np.zeros((z, 1 << bits, 1 << bits), np.int32)
     padded[:, : others + 1, :states] = weights.transpose(0, 2, 1)
-    own = np.full((1 << bits, 1 << bits), UNLIKE)
+    change = np.full((1 << bits, 1 << bits), UNLIKE)
     for old, new in itertools.product(range(states), repeat=2):
         if (weights[:, old] == weights[:, new]).all():
-            own[old, new] = int(first[new]) - int(first[old])
+            change[old, new] = int(first[new]) - int(first[old])
     begin = np.searchsorted([one.site[0] for one in ordered], range(states + 1))
     partner = [() if one.neighbour is None else one.neighbour[0] for one in ordered]
     every = range(z)
@@ -212,7 +213,7 @@ def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, e
         first,
         bits,
         padded.ravel(),
-        own.ravel(),
+        change.ravel(),
         np.array(rates),
         np.array(shares).ravel(),
         np.array([sum(1 << b for b in some) for some in partner]),
@@ -285,7 +286,7 @@ def _(model, sites, i, u):
     for p in range(model.of.begin[U(state)], model.of.begin[U(state + 1)]):
         rate = model.of.shares[U(row + p)]
         if rate > 0.0 and model.of.fits[U(p)] == 0:
-            last, chosen, target, left = p, np.int64(-1), np.int64(-1), left - rate
+            last, chosen, target, left = np.int64(p), np.int64(-1), np.int64(-1), left - rate
         elif rate > 0.0:
             fitting = np.uint64(0)  # a bit for each direction with a neighbour that takes part
             for direction in range(sites.grid.neighbours):
@@ -296,7 +297,7 @@ def _(model, sites, i, u):
             number = np.int64(bits_set(fitting))
             if number > 0:
                 rank = min(np.int64(left / rate), number - 1)
-                last, chosen = p, np.int64(nth_bit(fitting, rank))
+                last, chosen = np.int64(p), np.int64(nth_bit(fitting, rank))
                 target, left = neighbour(sites.grid, i, chosen), left - number * rate
         if left < 0.0:
             break
