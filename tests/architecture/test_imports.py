@@ -73,7 +73,7 @@ ROWS = {
         "scalar", "seam", "statistics", "theory",
     ),
     "method/kinetic_monte_carlo/": (
-        "case", "errors", "io", "kernels.kernel", "kernels.later", "kernels.packing",
+        "case", "errors", "io", "kernels.kernel", "kernels.packing", "loops.threads",
         "method.kinetic_monte_carlo", "observe", "processes.signals", "scalar", "seam",
         "statistics", "theory",
     ),

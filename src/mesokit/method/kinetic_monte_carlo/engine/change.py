@@ -73,15 +73,17 @@ def surroundings(model, sites, i):
 
 
 @scalar
-def _change_around(model, sites, choice, part, i, old, new, j, before, other):
-    """Change the surroundings of a site whose state has changed, and of its neighbours, after the
+def _change_around(model, sites, choice, part, i, old, j, before):
+    """Change the surroundings of a site whose state was another, and of its neighbours, after the
     state of the neighbour at j has changed too; those of j are left for later."""
+    new = np.int64(sites.states[U(i)])
     # in most models the number of the site's own surroundings changes by one and the same
     own = change_of_own(model, old, new)
     around = np.int64(sites.around[U(i)]) + own
     for direction in range(sites.grid.neighbours):
         k = neighbour(sites.grid, i, direction)
         if k == j:
+            other = np.int64(sites.states[U(k)])
             around += change_of_weight(model, direction, new, before, other)
         elif k >= 0:
             back, state = sites.grid.back[U(direction)], np.int64(sites.states[U(k)])
@@ -101,15 +103,15 @@ def change(model, sites, choice, part, i, new, j, other):
         before = np.int64(sites.states[U(j)])
         sites.states[U(j)] = other
     if sites.record.on:
-        change_recorded(sites.record, sites.grid, i, old, new, j, before, other)
+        change_recorded(sites.record, sites.grid, (i, old, new), (j, before, other))
+    if not keeps(choice):
+        return
     if j >= 0:
-        if keeps(choice):
-            _change_around(model, sites, choice, part, i, old, new, j, before, other)
-            _change_around(model, sites, choice, part, j, before, other, i, old, new)
-    elif keeps(choice) and old != new:
-        _change_around(model, sites, choice, part, i, old, new, NONE, before, other)
-    if keeps(choice):
-        settle(model, sites, choice, part, i, j)
+        _change_around(model, sites, choice, part, i, old, j, before)
+        _change_around(model, sites, choice, part, j, before, i, old)
+    elif old != new:
+        _change_around(model, sites, choice, part, i, old, NONE, before)
+    settle(model, sites, choice, part, i, j)
 
 
 @found.otherwise

@@ -284,10 +284,9 @@ def _nth(classes, i, c, rank):
     up_to_a = np.int64(bits_set(a))
     up_to_b = up_to_a + np.int64(bits_set(b))
     up_to_d = up_to_b + np.int64(bits_set(d))
-    word = a if rank < up_to_a else (b if rank < up_to_b else (d if rank < up_to_d else e))
-    before = 0 if rank < up_to_a else (
-        up_to_a if rank < up_to_b else (up_to_b if rank < up_to_d else up_to_d)
-    )  # fmt: skip
+    word, before = (a, 0) if rank < up_to_a else (b, up_to_a)
+    word, before = (word, before) if rank < up_to_b else (d, up_to_b)
+    word, before = (word, before) if rank < up_to_d else (e, up_to_d)
     line = (rank >= up_to_a) + (rank >= up_to_b) + (rank >= up_to_d)
     return i + 64 * line + np.int64(nth_bit(word, rank - before))
 

@@ -86,8 +86,10 @@ def move(record, grid, i, j):
 
 
 @scalar
-def change_recorded(record, grid, i, old, new, j, before, other):
-    """Note a change of the state of a site, and of a neighbour if j is not negative."""
+def change_recorded(record, grid, of_site, of_neighbour):
+    """Note a change at a site, and at a neighbour if its place is not negative: the place of each,
+    and its states before and after."""
+    (i, old, new), (j, before, other) = of_site, of_neighbour
     if len(record.since) > 0:
         if old != new:
             leave_state(record, i, old)
