@@ -11,14 +11,17 @@ from scipy.special import erfcx
 from mesokit import Simulation
 from mesokit.method.kinetic_monte_carlo.model.aggregation import Aggregation
 from mesokit.method.kinetic_monte_carlo.model.eden import Eden
+from mesokit.method.kinetic_monte_carlo.model.family import Family
 from mesokit.method.kinetic_monte_carlo.model.islands import Islands
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
+from mesokit.method.kinetic_monte_carlo.model.random_deposition import RandomDeposition
 from mesokit.method.kinetic_monte_carlo.model.sintering import Sintering
 from mesokit.method.kinetic_monte_carlo.model.solid_on_solid import SolidOnSolid
 from mesokit.method.kinetic_monte_carlo.model.surface_diffusion import SurfaceDiffusion
 from mesokit.method.kinetic_monte_carlo.observe.coverage import Coverage
 from mesokit.method.kinetic_monte_carlo.observe.event_rates import EventRates
 from mesokit.method.kinetic_monte_carlo.observe.lattice_energy import LatticeEnergy
+from mesokit.method.kinetic_monte_carlo.observe.roughness import Roughness
 from mesokit.method.kinetic_monte_carlo.start import (
     GrainsStart,
     NucleusStart,
@@ -172,6 +175,16 @@ def test_a_surface_with_bonds_is_as_rough_as_is_known():
     assert error < 0.01
     assert abs(np.mean(found) - 0.889) < 4 * error
     assert np.mean(found) == pytest.approx(0.889, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "model", [RandomDeposition(flux=2.0), Family(flux=2.0), SolidOnSolid(flux=2.0)]
+)
+def test_a_surface_on_which_all_atoms_stay_grows_with_the_flux(model):
+    case = lattice_case((64, 64), model, steps=40, observe=[Roughness(every=2)])
+    speed = results_of(case)["roughness"].comparisons[0]
+    assert (speed.what, speed.expected) == ("speed of growth", 2.0)
+    assert abs(speed.measured - 2.0) < 4 * math.sqrt(2.0 / (20 * 64**2))
 
 
 @pytest.mark.long

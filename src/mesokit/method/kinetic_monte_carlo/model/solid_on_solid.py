@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Literal
 
 from pydantic import model_validator
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.lattice.patch import Patch
@@ -17,7 +18,7 @@ from mesokit.method.kinetic_monte_carlo.model.heights import (
     Growth,
     HeightModel,
 )
-from mesokit.method.kinetic_monte_carlo.model.protocol import over_pairs
+from mesokit.method.kinetic_monte_carlo.model.protocol import Known, over_pairs
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
 
 DOWN = tuple(range(LEVEL - 1))  # columns two atoms lower or more: a hop onto one loses a level
@@ -81,3 +82,7 @@ class SolidOnSolid(HeightModel):
         if self.evaporate:
             return None
         return lambda patch: over_pairs(patch, lambda a, b: -self.bond_energy * min(a, b))
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """The speed at which atoms come down that only hop."""
+        return {} if self.evaporate else {"speed of growth": (self.flux, "all atoms stay")}
