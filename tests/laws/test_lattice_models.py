@@ -157,6 +157,8 @@ def test_what_follows_from_the_rates_of_islands_is_said():
     case = lattice_case((32, 32), Islands(flux=0.01, hop_rate=25.0), kind="triangular")
     assert row(case, "diffusion coefficient") == "37.5 a^2/time"  # 6 rate a^2 / 4
     assert row(case, "D/F") == "3750"
+    growth = SolidOnSolid(flux=2.0, attempt_rate=1e3, substrate_energy=0.0)  # in all directions
+    assert row(lattice_case((32, 32), growth), "D/F") == "125"
 
 
 def rough(size, times, seed=1):
