@@ -115,7 +115,11 @@ def _rows(case: Case, total: float | None) -> Iterator[Row]:
         yield "rate of all events", "0", "at the start: nothing happens"
     broken = detailed_balance(case)
     if broken is not None:
-        note = f"broken by process {broken}: there is no equilibrium" if broken else "with energies"
+        note = (
+            f"broken by process {broken}: there is no equilibrium"
+            if broken
+            else "of the moves of small patches"
+        )
         yield "detailed balance", "broken" if broken else "holds", note
     length, note = known_mean(case, "correlation length")
     if not math.isnan(length):

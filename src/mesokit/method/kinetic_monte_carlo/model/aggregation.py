@@ -1,11 +1,14 @@
 """Diffusion-limited aggregation: walkers that stick to a cluster when they touch it."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
+from mesokit.method.kinetic_monte_carlo.model.hop import diffusion_rows
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
+from mesokit.seam.method import Row
 
 EMPTY, WALKER, CLUSTER, OUTSIDE = 0, 1, 2, 3
 
@@ -51,6 +54,9 @@ class Aggregation(TableModel):
                 Process("leave", (WALKER, EMPTY), self.hop_rate - share, (), out),
             ]
         return [one for one in found if one.rate]
+
+    def derived(self, case: Case) -> Sequence[Row]:
+        return diffusion_rows(case.lattice.lattice, self.hop_rate, 0.0)
 
     def _stick(self, counts: Counts) -> float:
         # what hops would have without the cluster, times the probability

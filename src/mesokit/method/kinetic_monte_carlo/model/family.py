@@ -27,6 +27,8 @@ class Family(HeightModel):
         return [Growth(Process("deposit", (0, 0), self.flux), 1, stays=LOWEST)]
 
     def expected(self, case: Case) -> Mapping[str, Known]:
-        """The exponent of Edwards and Wilkinson on a chain."""
-        known = 0.25, "approximate: Edwards and Wilkinson, at late times"
-        return {"growth exponent": known} if case.lattice.kind == "chain" else {}
+        """The speed, and on a chain the exponent of Edwards and Wilkinson."""
+        found = {"speed of growth": (self.flux, "all atoms stay")}
+        if case.lattice.kind == "chain":
+            found["growth exponent"] = 0.25, "approximate: Edwards and Wilkinson, at late times"
+        return found

@@ -111,7 +111,8 @@ class Model(ABC):
 
         "energy" and "square energy" of a site; "mean", "size", "square" and "fourth" of the mean
         spin; "part S" of the sites in state S; "rate of P", events of process P for each site;
-        "growth exponent" of the width of a surface; "correlation length" in sites.
+        "speed of growth" of the mean height, "growth exponent" of the width of a surface;
+        "correlation length" in sites.
         """
         return {}
 

@@ -30,8 +30,11 @@ class RandomDeposition(HeightModel):
         return [Growth(Process("deposit", (0, 0), self.flux), 1)]
 
     def expected(self, case: Case) -> Mapping[str, Known]:
-        """The exponent of independent columns."""
-        return {"growth exponent": (0.5, "independent columns")}
+        """Speed and exponent of independent columns."""
+        return {
+            "speed of growth": (self.flux, "all atoms stay"),
+            "growth exponent": (0.5, "independent columns"),
+        }
 
     def expected_width(
         self, case: Case, time: NDArray[np.float64], first: float

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Literal
 
 from pydantic import model_validator
 
+from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
 from mesokit.method.kinetic_monte_carlo.lattice.patch import Patch
@@ -17,8 +18,10 @@ from mesokit.method.kinetic_monte_carlo.model.heights import (
     Growth,
     HeightModel,
 )
-from mesokit.method.kinetic_monte_carlo.model.protocol import over_pairs
+from mesokit.method.kinetic_monte_carlo.model.hop import diffusion_rows
+from mesokit.method.kinetic_monte_carlo.model.protocol import Known, over_pairs
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
+from mesokit.seam.method import Row
 
 DOWN = tuple(range(LEVEL - 1))  # columns two atoms lower or more: a hop onto one loses a level
 
@@ -81,3 +84,13 @@ class SolidOnSolid(HeightModel):
         if self.evaporate:
             return None
         return lambda patch: over_pairs(patch, lambda a, b: -self.bond_energy * min(a, b))
+
+    def derived(self, case: Case) -> Sequence[Row]:
+        """Diffusion of a lone atom, whose rate is that over all directions."""
+        kind = case.lattice.lattice
+        rate = self.attempt_rate * math.exp(-self.substrate_energy / self.kT)
+        return () if self.evaporate else diffusion_rows(kind, rate / kind.neighbours, self.flux)
+
+    def expected(self, case: Case) -> Mapping[str, Known]:
+        """The speed at which atoms come down that only hop."""
+        return {} if self.evaporate else {"speed of growth": (self.flux, "all atoms stay")}

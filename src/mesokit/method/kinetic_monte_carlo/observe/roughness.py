@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, show, tag
 from mesokit.errors import CaseError
-from mesokit.method.kinetic_monte_carlo.expected import growth_exponent, width
+from mesokit.method.kinetic_monte_carlo.expected import growth_exponent, known_mean, width
 from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
 from mesokit.method.kinetic_monte_carlo.observe.shared.parts import (
     PARTS,
@@ -82,7 +82,9 @@ class RoughnessAccumulator(BlockAccumulator):
         if len(time) < 2:
             return
         speed = (rows[-1, 0] - rows[len(rows) // 2, 0]) / (time[-1] - time[len(rows) // 2])
-        yield Comparison("speed of growth", speed, math.nan, unit="1/time", note="second half")
+        known, note = known_mean(self.case, "speed of growth")
+        note = f"second half; {note}" if note else "second half"
+        yield Comparison("speed of growth", speed, math.nan, known, "1/time", note)
         first, last = rows[0, 1:].mean(), rows[-1, 1:].mean()
         known, note = growth_exponent(self.case)
         if first > FLAT * last:
