@@ -49,4 +49,4 @@ class Profiles(SitePicture):
             line.remove()
         heights = self.frames.at(index)
         self.ax.stairs(heights, self.edges, baseline=None, color="black", lw=0.9)
-        self.ax.set_title(self.frames.title(index), fontsize=10)
+        self.ax.set_title(self.frames.title(index))
