@@ -93,6 +93,15 @@ def test_each_site_has_its_colour_at_its_place(kind):
     assert ax.get_xlabel() == "$x$  [$a$]"
 
 
+def test_a_lattice_that_ends_shows_its_shifted_rows_whole():
+    states = spins(1, 8, 6)
+    (image,) = drawn(states, Ising(), "triangular", ends=("x",)).axes[0].images
+    i, j = np.indices((8, 6))
+    assert image.get_extent()[:2] == [0, 8.5]
+    found = bin_at(image, i + 0.5 + 0.5 * (j % 2), ROOT * (j + 0.5))
+    np.testing.assert_array_equal(found, states[0])
+
+
 def test_a_layer_of_three_axes_is_named():
     states = spins(1, 4, 6, 8)
     figure = drawn(states, Ising(), "cubic", "sites", axes=("z", "x"), at=5.5)
