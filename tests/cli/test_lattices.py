@@ -123,6 +123,8 @@ def test_heights_are_kept_and_a_chain_has_no_map(tmp_path, monkeypatch, capsys):
     capsys.readouterr()
     words = "kind = 'sites'", "heights on a chain", "'space-time' or 'profiles'"
     has_words(refused(capsys, "plot", "case", "--kind", "sites"), words)
+    command("check", case, "--picture", "start.png")
+    assert (tmp_path / "start.png").exists()
     command("plot", "case", "--time", "log")
     assert (tmp_path / "case" / "flow-profiles.png").exists()
     command("export", "case", "--to", "grown.xyz")

@@ -175,6 +175,15 @@ def test_images_have_a_block_of_pixels_for_each_site(spins, surface, tmp_path):
     np.testing.assert_array_equal(shades[-1][::-1].T.ravel(), heights[-1] - heights.min())
 
 
+def test_frames_up_to_a_checkpoint(tmp_path):
+    case = lattice_case(SIZE, Ising(), steps=8, trajectory=KEPT)
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    simulation.run(5)
+    read = frames_of(mesokit.open(tmp_path / "run").export(tmp_path / "run.xyz"))
+    assert [re.search(r"Step=(\d+)", head)[1] for head, _ in read] == ["0", "2", "4"]
+    assert {len(columns["id"]) for _, columns in read} == {24}
+
+
 def test_exports_that_make_no_sense_are_refused(spins, surface, tmp_path, capsys):
     square, triangular = (spins[kind].path for kind in ("square", "triangular"))
     for run, given, words in [

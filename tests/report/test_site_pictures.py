@@ -6,7 +6,6 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 from matplotlib.collections import PolyCollection, QuadMesh
-from matplotlib.patches import StepPatch
 from matplotlib.path import Path as Outline
 
 from mesokit import Box, Case, CaseError, Run, RunError
@@ -93,6 +92,15 @@ def test_each_site_has_its_colour_at_its_place(kind):
     assert ax.get_xlabel() == "$x$  [$a$]"
 
 
+def test_a_lattice_that_ends_shows_its_shifted_rows_whole():
+    states = spins(1, 8, 6)
+    (image,) = drawn(states, Ising(), "triangular", ends=("x",)).axes[0].images
+    i, j = np.indices((8, 6))
+    assert image.get_extent()[:2] == [0, 8.5]
+    found = bin_at(image, i + 0.5 + 0.5 * (j % 2), ROOT * (j + 0.5))
+    np.testing.assert_array_equal(found, states[0])
+
+
 def test_a_layer_of_three_axes_is_named():
     states = spins(1, 4, 6, 8)
     figure = drawn(states, Ising(), "cubic", "sites", axes=("z", "x"), at=5.5)
@@ -132,10 +140,11 @@ def test_profiles_are_heights_at_several_times():
     for time in ("linear", "log"):
         case, frames = lattice_case((12,), Family(), "chain"), Frames(heights)
         (ax,) = picture(case, {}, frames, time=time).axes
-        lines = [part for part in ax.patches if isinstance(part, StepPatch)]
+        lines = ax.get_lines()
         shown[time] = [int(line.get_label().strip("$").removeprefix("t = ")) for line in lines]
         for row, line in zip(shown[time], lines, strict=True):
-            np.testing.assert_array_equal(line.get_data().values, heights[row])
+            np.testing.assert_array_equal(line.get_ydata()[:-1], heights[row])
+            assert line.get_drawstyle() == "steps-post" and line.get_xdata()[-1] == 12
     assert shown["linear"] == [0, 20, 40, 60, 80, 100]
     assert shown["log"][0] == 0 and shown["log"][-1] == 100
     ratios = np.diff(np.log(shown["log"][1:]))

@@ -38,7 +38,9 @@ def test_a_full_lattice_says_so_and_its_time_counts(tmp_path, monkeypatch):
     words = f"after t = {time:.6g} nothing can happen any more"
     assert told.getvalue().count(words) == 1
     assert repr(files).count(words) == 1
-    assert words in files.report().read_text()
+    page = files.report().read_text()
+    assert words in page
+    assert "lattice of 64 x 64 sites, 40 steps" in page and "particles" not in page
     # each site is filled after a time with the mean 1: it is empty in a geometric number of samples
     parts = files["coverage"].value
     full = files["coverage"].x["time"][parts[:, 1] == 1.0]

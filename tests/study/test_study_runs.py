@@ -7,15 +7,19 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import Future
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import mesokit
-from mesokit import Study
+from mesokit import Box, Case, Run, Study
 from mesokit.errors import CaseError, RunError
+from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.study import local
-from mesokit.study.drive import StudyReporter
+from mesokit.study.drive import StudyReporter, drive
+from tests.helpers.lattices import lattice_case
 from tests.helpers.studies import FORCE, said
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "studies"
@@ -114,6 +118,40 @@ def test_progress_is_told_once(capsys):
         "study: 3 of 3 runs to do",
         *(f"study: 100 %, {n} of 3 {what}" for n in (0, 1)),
     ]
+
+
+class NoWorkers:
+    """One place, where no run goes far."""
+
+    places = 1
+
+    def submit(self, path):
+        done = Future()
+        done.set_result("lost")
+        return done
+
+    def stop(self):
+        pass
+
+    def close(self):
+        pass
+
+
+@pytest.mark.parametrize(
+    "case, noun",
+    [
+        (lattice_case((8, 6), Ising(), steps=10), "site"),
+        (Case(run=Run(steps=10), box=Box([8, 8])), "particle"),
+    ],
+)
+def test_progress_counts_what_the_cases_have(case, noun):
+    run = SimpleNamespace(
+        files=SimpleNamespace(case=case), path=Path("run"), ended=False, step=0, failed="lost"
+    )
+    reporter = StudyReporter(quiet=True)
+    reporter.rate = lambda: 2e6
+    assert drive([run], NoWorkers(), reporter) == [(run, "lost")]
+    assert f"2 M {noun}-steps/s" in reporter.words(0)
 
 
 def begun(study: Path, number: int, process: subprocess.Popen[str]) -> list[Path]:

@@ -27,10 +27,10 @@ from mesokit.report.flow.noise import averaged, note, smooth, smoothing
 from mesokit.report.flow.region import Region, View, frames_in, region_of, require_none
 from mesokit.report.flow.site_frames import PER_DECADE, geometric, require_spacing
 from mesokit.report.flow.site_kinds import SITE_KINDS, own_kind, site_picture
+from mesokit.report.flow.site_picture import look
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, Source, choose_one, sources
 from mesokit.report.progress import FilmReporter, Reporter
-from mesokit.report.style import STYLE
 from mesokit.seam.in_units import of_case
 
 if TYPE_CHECKING:
@@ -206,7 +206,7 @@ def _of_sites(
 
     def pictures() -> Iterator[Pixels]:
         for done, row in enumerate(rows, start=1):
-            with mpl.rc_context(STYLE):
+            with mpl.rc_context(look()):
                 drawn.show(int(row))
                 drawn.figure.canvas.draw()
             yield np.asarray(drawn.figure.canvas.buffer_rgba())[..., :3]

@@ -75,7 +75,7 @@ class Heights(SitePicture):
         )
         mean = float(self.frames.at(index).mean())
         words = [self.frames.title(index), f"mean height {mean:.4g}", self.drawn_as]
-        self.ax.set_title(", ".join(filter(None, words)), fontsize=10)
+        self.ax.set_title(", ".join(filter(None, words)))
 
 
 def faces(

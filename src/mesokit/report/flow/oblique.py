@@ -17,7 +17,7 @@ TURN, RISE = math.radians(35), math.radians(32)  # of the eye: to the right of -
 # points from an axis: end of a tick, its number, the name; and how much more of that along z
 TICK, LETTERS, NAME, FARTHER = 4.0, 7.0, 25.0, 8.0
 ROOM = 0.02, 0.14, 0.1  # of the picture: beyond the box, on the left and below for numbers
-MANY = 5  # ticks
+MANY, FLAT = 5, 0.25  # ticks; height over the longest side, below which there are two
 RIGHT = np.array([math.cos(TURN), math.sin(TURN), 0.0])
 UP = np.array([-math.sin(TURN) * math.sin(RISE), math.cos(TURN) * math.sin(RISE), math.cos(RISE)])
 TOWARDS = np.cross(RIGHT, UP)  # the eye
@@ -91,7 +91,7 @@ class Box:
                 point = np.where(np.arange(3) == axis, place, start)
                 here = projected(point[None])[0]
                 ax.annotate("", here, xytext=out * TICK, arrowprops=line, **offset)
-                ax.annotate(text, here, xytext=out * LETTERS, fontsize=9, **beside, **offset)
+                ax.annotate(text, here, xytext=out * LETTERS, fontsize="small", **beside, **offset)
             middle = projected(0.5 * (start + end)[None])[0]
             if turned:
                 beside = {"ha": "center", "va": "center", "rotation": 90}
@@ -106,7 +106,9 @@ class Box:
         if axis == 2:
             low, high = self.number(low), self.number(high)
         slack = 1e-9 * (high - low)
-        found = MaxNLocator(MANY, steps=[1, 2, 5, 10]).tick_values(low, high)
+        sides = self.high - self.low
+        flat = axis == 2 and sides[2] < FLAT * sides.max()  # little room for numbers
+        found = MaxNLocator(2 if flat else MANY, steps=[1, 2, 5, 10]).tick_values(low, high)
         inside = [float(x) for x in found if low - slack <= x <= high + slack]
         return [(self.place(x) if axis == 2 else x, f"{x:g}".replace("-", "−")) for x in inside]
 

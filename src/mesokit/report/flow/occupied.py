@@ -59,4 +59,4 @@ class Occupied(SitePicture):
         self.drawn = self.ax.imshow(image, origin="lower", extent=extent, zorder=2)
         self.ax.set(xlim=(left, right), ylim=(low, high))
         share = f"{len(rows)} of {len(states)} sites"
-        self.ax.set_title(f"{self.frames.title(index)}, {share}", fontsize=10)
+        self.ax.set_title(f"{self.frames.title(index)}, {share}")

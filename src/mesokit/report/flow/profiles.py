@@ -1,5 +1,7 @@
 """Profiles of a surface above a chain: heights along x at several times."""
 
+from typing import Any
+
 import numpy as np
 
 from mesokit.report.flow.site_frames import PER_DECADE, SiteFrames, evenly, geometric
@@ -38,15 +40,18 @@ class Profiles(SitePicture):
 
         shades = colormaps["cividis_r"](np.linspace(PALE, DARK, len(wanted)))
         for row, colour in zip(wanted, shades, strict=True):
-            heights, title = frames.at(int(row)), frames.title(int(row))
-            self.ax.stairs(heights, self.edges, baseline=None, color=colour, lw=0.9, label=title)
+            self._line(int(row), color=colour, label=frames.title(int(row)))
         handles, labels = self.ax.get_legend_handles_labels()
         beside = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "borderaxespad": 0.0}
         self.ax.legend(handles[::-1], labels[::-1], fontsize=8, handlelength=1.2, **beside)
 
     def show(self, index: int) -> None:
-        for line in list(self.ax.patches):
+        for line in list(self.ax.lines):
             line.remove()
+        self._line(index, color="black")
+        self.ax.set_title(self.frames.title(index))
+
+    def _line(self, index: int, **style: Any) -> None:
         heights = self.frames.at(index)
-        self.ax.stairs(heights, self.edges, baseline=None, color="black", lw=0.9)
-        self.ax.set_title(self.frames.title(index), fontsize=10)
+        steps = np.append(heights, heights[-1])  # from the first edge of each site to its last
+        self.ax.step(self.edges, steps, where="post", lw=0.9, **style)

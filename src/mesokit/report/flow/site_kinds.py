@@ -12,10 +12,9 @@ from mesokit.report.flow.occupied import Occupied
 from mesokit.report.flow.profiles import Profiles
 from mesokit.report.flow.region import View
 from mesokit.report.flow.site_frames import SiteFrames, lattice_group
-from mesokit.report.flow.site_picture import SitePicture
+from mesokit.report.flow.site_picture import SitePicture, look
 from mesokit.report.flow.space_time import SpaceTime
 from mesokit.report.flow.state import State
-from mesokit.report.style import STYLE
 
 SITE_KINDS: dict[str, type[SitePicture]] = {
     "space-time": SpaceTime,
@@ -67,7 +66,7 @@ def site_picture(
         raise CaseError(
             f"states = {show(list(view.states))}: not with kind {show(kind)}; expected 'occupied'"
         )
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(look()):
         return SITE_KINDS[kind](SiteFrames(kind, group, trajectory, view))
 
 
@@ -78,6 +77,6 @@ def site_still(
     import matplotlib as mpl
 
     drawn = site_picture(kind, case, trajectory, view)
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(look()):
         drawn.still()
     return drawn.figure

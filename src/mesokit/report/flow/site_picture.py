@@ -6,6 +6,12 @@ from mesokit.case.trajectory import Group
 from mesokit.report.flow.layout import width_of_page
 from mesokit.report.flow.site_frames import SiteFrames
 from mesokit.report.notebook import ShownFigure
+from mesokit.report.style import STYLE, fonts
+
+
+def look() -> Any:
+    """Settings of Matplotlib: smaller letters in a narrow figure."""
+    return STYLE | {"axes.titlesize": 10} | fonts(width_of_page())
 
 
 class SitePicture:

@@ -39,4 +39,4 @@ class SpaceTime(SitePicture):
         ax.set_ylabel(labelled("time $t$", "tau"))
         ax.tick_params(direction="out", top=False, right=False)
         first, last = frames.title(0), frames.title(len(frames) - 1)
-        ax.set_title(f"{first} to {last}" if len(frames) > 1 else first, fontsize=10)
+        ax.set_title(f"{first} to {last}" if len(frames) > 1 else first)
