@@ -158,6 +158,9 @@ from mesokit.theory.square_array import square_array_drag_dilute as square_array
 from mesokit.theory.square_array import square_array_permeability as square_array_permeability
 from mesokit.theory.stress_in_time import StressInTime as StressInTime
 from mesokit.theory.stress_in_time import stress_in_time as stress_in_time
+from mesokit.theory.surface import ring_differences as ring_differences
+from mesokit.theory.surface import ring_width as ring_width
+from mesokit.theory.surface import solid_on_solid_steps as solid_on_solid_steps
 from mesokit.theory.taylor_couette import taylor_couette_coefficients as taylor_couette_coefficients
 from mesokit.theory.taylor_couette import taylor_couette_torque as taylor_couette_torque
 from mesokit.theory.taylor_couette import taylor_couette_velocity as taylor_couette_velocity

@@ -11,9 +11,14 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.method.kinetic_monte_carlo.expected import Known, langmuir
+from mesokit.method.kinetic_monte_carlo.model.ballistic import Ballistic
 from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
+from mesokit.method.kinetic_monte_carlo.model.family import Family
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.potts import Potts
+from mesokit.method.kinetic_monte_carlo.model.rsos import RestrictedSolidOnSolid
+from mesokit.method.kinetic_monte_carlo.model.single_step import SingleStep
+from mesokit.method.kinetic_monte_carlo.model.solid_on_solid import SolidOnSolid
 from mesokit.method.kinetic_monte_carlo.model.table import TableModel
 from mesokit.method.kinetic_monte_carlo.start import RandomStart, UniformStart, sites_of
 
@@ -21,6 +26,7 @@ Array = NDArray[np.floating[Any]]
 Curve = tuple[Array | None, str]  # values where theory is known, and a note on it
 UNKNOWN: Curve = (None, "")
 LONG = 10  # correlation lengths in a lattice whose correlations are as in an infinite one
+HIGHEST = 400  # atoms of a step whose probability counts
 MOST_ROWS = 64  # of determinants, the time of which grows as the fourth power
 
 
@@ -160,3 +166,60 @@ def island_sizes(case: Case, observable: Any, edges: Array) -> Curve:
     if known[n // 2 :].sum() > 1e-9:  # islands as long as the ring
         return UNKNOWN
     return np.add.reduceat(known, edges[:-1].astype(int) - 1) / np.diff(edges), note
+
+
+def square_step(case: Case) -> Known:
+    """Mean square step between columns of a ring in its steady state."""
+    model, n = case.lattice.model, sites_of(case)
+    if case.lattice.kind != "chain" or case.lattice.ends or case.run.warmup == 0:
+        return math.nan, ""
+    if isinstance(model, SingleStep) and settled(case):
+        return 1.0, "all orders of the steps alike"
+    if isinstance(model, SolidOnSolid) and not (
+        model.flux or model.step_barrier or model.evaporate
+    ):
+        step = np.arange(-HIGHEST, HIGHEST + 1.0)
+        ratio = math.exp(-0.5 * model.bond_energy / model.kT)
+        return float(step**2 @ theory.solid_on_solid_steps(step, ratio, n)), "equilibrium of a ring"
+    return math.nan, ""
+
+
+def settled(case: Case) -> bool:
+    """Whether the warm-up of a single-step surface is as long as its correlations need to grow."""
+    model, warmup = case.lattice.model, case.run.warmup * case.lattice.timestep
+    power = 2.0 if model.up == model.down else 1.5
+    return bool(warmup * (model.up + model.down) >= sites_of(case) ** power)
+
+
+def height_differences(case: Case, distance: Array) -> Curve:
+    """Mean square difference of heights at distances."""
+    square, note = square_step(case)
+    if math.isnan(square):
+        return UNKNOWN
+    return theory.ring_differences(distance, sites_of(case), square), note
+
+
+def height_steps(case: Case, step: Array) -> tuple[Array | None, float, str]:
+    """Probabilities of steps, and their mean square."""
+    square, note = square_step(case)
+    model = case.lattice.model
+    if isinstance(model, SingleStep):
+        return np.where(abs(step) == 1, 0.5, 0.0), 1.0, "steps of one atom"
+    if math.isnan(square):
+        return None, square, note
+    ratio = math.exp(-0.5 * model.bond_energy / model.kT)
+    return theory.solid_on_solid_steps(step, ratio, sites_of(case)), square, note
+
+
+def roughness_exponent(case: Case) -> Known:
+    """Exponent of the width of a surface in the distance, in its steady state."""
+    grows = isinstance(case.lattice.model, Family | RestrictedSolidOnSolid | Ballistic | SingleStep)
+    if grows and case.lattice.kind == "chain":
+        return 0.5, "approximate: Edwards and Wilkinson, Kardar, Parisi and Zhang"
+    return math.nan, ""
+
+
+def saturated_width(case: Case) -> Known:
+    """Mean square width of a ring in its steady state."""
+    square, note = square_step(case)
+    return theory.ring_width(sites_of(case), square), note

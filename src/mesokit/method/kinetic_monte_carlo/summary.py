@@ -19,6 +19,8 @@ from mesokit.seam.method import Row, Summary
 SECONDS = 0.2e-6  # of a thread for an event, where the project measures (docs/benchmark.md)
 LONGEST = 1e10  # seconds: longer ones are not told apart
 EQUILIBRIUM = {  # what theory expects in it alone
+    "height-differences",
+    "height-steps",
     "lattice-energy",
     "magnetisation",
     "site-correlation",

@@ -1,0 +1,1 @@
+"""What several observables of lattices have in common."""
