@@ -175,9 +175,11 @@ BAD_GAS: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "current of no species": ({"[lattice.model]":
                                '[[observe]]\nquantity = "current"\nstate = "B"\n[lattice.model]'},
                               ("observe[#1].state = 'B'", "'A'")),
-    "crossings on a ring": ({"[lattice.model]": '[[observe]]\nquantity = "crossings"\n[lattice.model]'},
+    "crossings on a ring": ({"[lattice.model]":
+                             '[[observe]]\nquantity = "crossings"\n[lattice.model]'},
                             ("observe[#1].axis = 'x'", "lattice.ends")),
-    "crossings of what lands": ({"[lattice.model]": '[[observe]]\nquantity = "crossings"\n[lattice.model]',
+    "crossings of what lands": ({"[lattice.model]":
+                                 '[[observe]]\nquantity = "crossings"\n[lattice.model]',
                                  "[lattice]": '[lattice]\nends = ["x"]'},
                                 ("make particles",)),
     "a plane beyond the box": ({"[lattice.model]":

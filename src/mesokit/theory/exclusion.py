@@ -57,7 +57,7 @@ def step_crossings(time: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.flo
 
     >>> mean, variance = step_crossings([100.0, 1000.0])
     >>> round(float(mean[1] - mean[0]), 3), round(float(variance[1]), 2)
-    (228.767, 12.81)
+    (228.766, 12.81)
     """
     found = np.asarray(time, float)
     not_negative(time=float(found.min(initial=0.0)))

@@ -38,11 +38,13 @@ class Carried:
                 "to a neighbour; leave it out"
             )
         self.rows = np.multiply.outer(signs, steps[0])
-        ends = np.array([one.neighbour is not None and outside in one.neighbour[0]
-                         for one in ordered])  # fmt: skip
+        ends = np.array(
+            [one.neighbour is not None and outside in one.neighbour[0] for one in ordered]
+        )
         self.over = np.where(ends[:, None], self.rows, 0.0)
-        self.kept = all(sign or not _changes(one, wanted) for sign, one in zip(
-            signs, ordered, strict=True))  # fmt: skip
+        self.kept = all(
+            sign or not _changes(one, wanted) for sign, one in zip(signs, ordered, strict=True)
+        )
         length = case.box.size[along]
         self.ends = axis in case.lattice.ends
         self.planes = float(length)
