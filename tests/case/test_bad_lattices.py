@@ -157,6 +157,17 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "islands of few sites": ({'"magnetisation"': '"island-sizes"'}, ("observe[#1]", "box.size")),
     "sizes at a level of spins": ({'"magnetisation"': '"island-sizes"\nlevel = 1',
                                    "[12, 10]": "[32, 10]"}, ("observe[#1].level = 1", "heights")),
+    "differences of spins": ({'"magnetisation"': '"height-differences"'},
+                             ("observe[#1]", "no heights")),
+    "differences along no axis": ({'"magnetisation"': '"height-differences"\naxis = "z"',
+                                   'rule = "ising"\nkT = 2.0': 'rule = "family"',
+                                   RANDOM: '{ rule = "uniform" }'},
+                                  ("observe[#1]", "axis = 'z'", "2D")),
+    "steps of spins": ({'"magnetisation"': '"height-steps"'}, ("observe[#1]", "no heights")),
+    "current of spins": ({'"magnetisation"': '"current"'}, ("observe[#1]", "to a neighbour")),
+    "current of heights": ({'"magnetisation"': '"current"', RANDOM: '{ rule = "uniform" }',
+                            'rule = "ising"\nkT = 2.0': 'rule = "family"'},
+                           ("observe[#1]", "no particles")),
     "an observable of fluids": ({'"magnetisation"': '"flow-rate"'},
                                 ("observe[#1].quantity", "does not offer it")),
     "spins of a gas": ({'rule = "ising"\nkT = 2.0': 'rule = "potts"'},
@@ -254,6 +265,22 @@ BAD_GAS: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
                           ("process[#2].neighbour", "lattice.ends")),
     "bonds to nothing": ({'bonded = ["A"]': ""}, ("process[#2].bond", "bonded")),
     "bonds to none": ({'bonded = ["A"]': 'bonded = ["B"]'}, ("process[#2].bonded", "'A'")),
+    "current along no axis": ({"[lattice.model]":
+                               '[[observe]]\nquantity = "current"\naxis = "z"\n[lattice.model]'},
+                              ("observe[#1]", "axis = 'z'", "2D")),
+    "current of no species": ({"[lattice.model]":
+                               '[[observe]]\nquantity = "current"\nstate = "B"\n[lattice.model]'},
+                              ("observe[#1].state = 'B'", "'A'")),
+    "crossings on a ring": ({"[lattice.model]":
+                             '[[observe]]\nquantity = "crossings"\n[lattice.model]'},
+                            ("observe[#1].axis = 'x'", "lattice.ends")),
+    "crossings of what lands": ({"[lattice.model]":
+                                 '[[observe]]\nquantity = "crossings"\n[lattice.model]',
+                                 "[lattice]": '[lattice]\nends = ["x"]'},
+                                ("make particles",)),
+    "a plane beyond the box": ({"[lattice.model]":
+                                '[[observe]]\nquantity = "crossings"\npart = 1.5\n[lattice.model]'},
+                               ("observe[#1].part = 1.5",)),
     "energy of a gas": ({"[lattice.model]":
                          '[[observe]]\nquantity = "lattice-energy"\n[lattice.model]'},
                         ("observe[#1]", "no energy")),

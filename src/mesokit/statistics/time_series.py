@@ -84,6 +84,17 @@ class TimeSeries:
         """The number of independent series that are pooled in it."""
         return 1 + len(self._others)
 
+    def each(self) -> NDArray[np.float64]:
+        """The values of every series, as far as the shortest goes, (series, n, width).
+
+        >>> one, other = TimeSeries(1), TimeSeries(1)
+        >>> one.add(0, [1]), other.add(0, [3]), one.pool(other)
+        (None, None, None)
+        >>> one.each()[:, 0, 0]
+        array([1., 3.])
+        """
+        return self._aligned()[:, :, 1:]
+
     def error(self) -> NDArray[np.float64]:
         """Standard errors of `values`, (n, width), by how the pooled series scatter; nan for fewer
         than 4.

@@ -40,6 +40,8 @@ from mesokit.theory.enskog import enskog_diffusion as enskog_diffusion
 from mesokit.theory.enskog import enskog_rate as enskog_rate
 from mesokit.theory.exclusion import open_current as open_current
 from mesokit.theory.exclusion import ring_current as ring_current
+from mesokit.theory.exclusion import ring_diffusion as ring_diffusion
+from mesokit.theory.exclusion import step_crossings as step_crossings
 from mesokit.theory.finite_size import diffusion_in_box as diffusion_in_box
 from mesokit.theory.finite_size import viscosity_renormalised as viscosity_renormalised
 from mesokit.theory.flight_moduli import flight_moduli as flight_moduli
@@ -158,6 +160,9 @@ from mesokit.theory.square_array import square_array_drag_dilute as square_array
 from mesokit.theory.square_array import square_array_permeability as square_array_permeability
 from mesokit.theory.stress_in_time import StressInTime as StressInTime
 from mesokit.theory.stress_in_time import stress_in_time as stress_in_time
+from mesokit.theory.surface import ring_differences as ring_differences
+from mesokit.theory.surface import ring_width as ring_width
+from mesokit.theory.surface import solid_on_solid_steps as solid_on_solid_steps
 from mesokit.theory.taylor_couette import taylor_couette_coefficients as taylor_couette_coefficients
 from mesokit.theory.taylor_couette import taylor_couette_torque as taylor_couette_torque
 from mesokit.theory.taylor_couette import taylor_couette_velocity as taylor_couette_velocity

@@ -2,7 +2,10 @@
 
 import math
 
-from mesokit.theory._check import whole
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesokit.theory._check import not_negative, whole
 
 
 def ring_current(particles: int, sites: int) -> float:
@@ -20,6 +23,46 @@ def ring_current(particles: int, sites: int) -> float:
     if particles > sites:
         raise ValueError(f"particles = {particles!r}: expected at most {sites} sites")
     return particles * (sites - particles) / (sites * (sites - 1))
+
+
+def ring_diffusion(particles: int, sites: int) -> float:
+    """Variance of the displacement of a particle of a ring over time, at rate 1 of a hop.
+
+    Parameters: `particles` N and `sites` L of the ring. (2L - 3)!/((2N - 1)! (2L - 2N - 1)!)
+    ((N - 1)! (L - N)!/(L - 1)!)^2, late in time. Raises ValueError unless there are a particle and
+    an empty site. Source: B. Derrida, M. R. Evans and D. Mukamel, J. Phys. A 26, 4911 (1993).
+
+    >>> ring_diffusion(1, 10), round(ring_diffusion(9, 10) * 81, 6)
+    (1.0, 1.0)
+    """
+    whole(1, particles=particles)
+    whole(particles + 1, sites=sites)
+    n, most = particles, sites
+    logarithm = (
+        math.lgamma(2 * most - 2)
+        - math.lgamma(2 * n)
+        - math.lgamma(2 * most - 2 * n)
+        + 2 * (math.lgamma(n) + math.lgamma(most - n + 1) - math.lgamma(most))
+    )
+    return math.exp(logarithm)
+
+
+def step_crossings(time: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Particles that cross the edge of a full half of an infinite chain, and their variance.
+
+    Parameters: `time` in inverse rates of a hop. t/4 + 2^(-4/3) 1.77109 t^(1/3) and 2^(-8/3)
+    0.81319 t^(2/3), from the mean and the variance of the distribution of Tracy and Widom; late in
+    time, but for a constant. Raises ValueError for negative times. Source: K. Johansson, Commun.
+    Math. Phys. 209, 437 (2000).
+
+    >>> mean, variance = step_crossings([100.0, 1000.0])
+    >>> round(float(mean[1] - mean[0]), 3), round(float(variance[1]), 2)
+    (228.766, 12.81)
+    """
+    found = np.asarray(time, float)
+    not_negative(time=float(found.min(initial=0.0)))
+    root = np.cbrt(found)
+    return found / 4 + 2 ** (-4 / 3) * 1.77109 * root, 2 ** (-8 / 3) * 0.81319 * root**2
 
 
 def open_current(sites: int, enter: float, leave: float) -> float:

@@ -11,17 +11,24 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.method.kinetic_monte_carlo.expected import Known, coverages
+from mesokit.method.kinetic_monte_carlo.model.ballistic import Ballistic
 from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
+from mesokit.method.kinetic_monte_carlo.model.family import Family
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import LatticeGas
 from mesokit.method.kinetic_monte_carlo.model.potts import Potts
+from mesokit.method.kinetic_monte_carlo.model.rsos import RestrictedSolidOnSolid
+from mesokit.method.kinetic_monte_carlo.model.single_step import SingleStep
+from mesokit.method.kinetic_monte_carlo.model.solid_on_solid import SolidOnSolid
 from mesokit.method.kinetic_monte_carlo.model.table import TableModel
-from mesokit.method.kinetic_monte_carlo.start import RandomStart, UniformStart, sites_of
+from mesokit.method.kinetic_monte_carlo.start import RandomStart, SlabStart, UniformStart, sites_of
 
 Array = NDArray[np.floating[Any]]
 Curve = tuple[Array | None, str]  # values where theory is known, and a note on it
 UNKNOWN: Curve = (None, "")
 LONG = 10  # correlation lengths in a lattice whose correlations are as in an infinite one
+HIGHEST = 400  # atoms of a step whose probability counts
+REACH = 0.9  # of the room on both sides of a step, which news of it crosses at the speed 1
 MOST_ROWS = 64  # of determinants, the time of which grows as the fourth power
 
 
@@ -169,3 +176,102 @@ def island_sizes(case: Case, observable: Any, edges: Array) -> Curve:
     if known[n // 2 :].sum() > 1e-9:  # islands as long as the ring
         return UNKNOWN
     return np.add.reduceat(known, edges[:-1].astype(int) - 1) / np.diff(edges), note
+
+
+def square_step(case: Case) -> Known:
+    """Mean square step between columns of a ring in its steady state."""
+    model, n = case.lattice.model, sites_of(case)
+    if case.lattice.kind != "chain" or case.lattice.ends or case.run.warmup == 0:
+        return math.nan, ""
+    if isinstance(model, SingleStep) and settled(case):
+        return 1.0, "all orders of the steps alike"
+    if isinstance(model, SolidOnSolid) and not (
+        model.flux or model.step_barrier or model.evaporate
+    ):
+        step = np.arange(-HIGHEST, HIGHEST + 1.0)
+        ratio = math.exp(-0.5 * model.bond_energy / model.kT)
+        return float(step**2 @ theory.solid_on_solid_steps(step, ratio, n)), "equilibrium of a ring"
+    return math.nan, ""
+
+
+def settled(case: Case) -> bool:
+    """Whether the warm-up of a single-step surface is as long as its correlations need to grow."""
+    model, warmup = case.lattice.model, case.run.warmup * case.lattice.timestep
+    power = 2.0 if model.up == model.down else 1.5
+    return bool(warmup * (model.up + model.down) >= sites_of(case) ** power)
+
+
+def height_differences(case: Case, distance: Array) -> Curve:
+    """Mean square difference of heights at distances."""
+    square, note = square_step(case)
+    if math.isnan(square):
+        return UNKNOWN
+    return theory.ring_differences(distance, sites_of(case), square), note
+
+
+def height_steps(case: Case, step: Array) -> tuple[Array | None, float, str]:
+    """Probabilities of steps, and their mean square."""
+    square, note = square_step(case)
+    model = case.lattice.model
+    if isinstance(model, SingleStep):
+        return np.where(abs(step) == 1, 0.5, 0.0), 1.0, "steps of one atom"
+    if math.isnan(square):
+        return None, square, note
+    ratio = math.exp(-0.5 * model.bond_energy / model.kT)
+    return theory.solid_on_solid_steps(step, ratio, sites_of(case)), square, note
+
+
+def roughness_exponent(case: Case) -> Known:
+    """Exponent of the width of a surface in the distance, in its steady state."""
+    grows = isinstance(case.lattice.model, Family | RestrictedSolidOnSolid | Ballistic | SingleStep)
+    if grows and case.lattice.kind == "chain":
+        return 0.5, "approximate: Edwards and Wilkinson, Kardar, Parisi and Zhang"
+    return math.nan, ""
+
+
+def saturated_width(case: Case) -> Known:
+    """Mean square width of a ring in its steady state."""
+    square, note = square_step(case)
+    return theory.ring_width(sites_of(case), square), note
+
+
+def current(case: Case, particles: int) -> tuple[float, float, str]:
+    """Mean current of particles on a chain, the variance of crossings per time, and a note; of a
+    ring with so many particles."""
+    model, n = case.lattice.model, sites_of(case)
+    if not isinstance(model, Exclusion):
+        return math.nan, math.nan, ""
+    if ring_of_particles(case):
+        mean = (model.forward - model.backward) * theory.ring_current(particles, n)
+        if model.backward or not 0 < particles < n:
+            return mean, math.nan, "all states alike"
+        scatter = model.forward * theory.ring_diffusion(particles, n) * (particles / n) ** 2
+        return mean, scatter, "all states alike; Derrida, Evans and Mukamel 1993"
+    if model.backward or model.enter_last or model.leave_first:
+        return math.nan, math.nan, ""
+    if not min(model.forward, model.enter, model.leave) > 0:
+        return math.nan, math.nan, ""
+    enter, leave = model.enter / model.forward, model.leave / model.forward
+    return model.forward * theory.open_current(n, enter, leave), math.nan, "Derrida et al. 1993"
+
+
+def crossings(case: Case, observable: Any, time: Array) -> tuple[Array | None, float, str]:
+    """Particles that crossed the plane at which a full half begins to empty, and the variance at
+    the last time, in an infinite chain that hops one way."""
+    model, start = case.lattice.model, case.lattice.first()
+    if not isinstance(model, Exclusion) or not isinstance(start, SlabStart) or not len(time):
+        return None, math.nan, ""
+    plain = (
+        not (model.backward or model.enter or model.leave or model.enter_last or model.leave_first)
+        and model.forward > 0
+        and start.state in (None, "particle")
+        and start.beyond in (None, "empty")
+        and start.part == observable.part
+        and observable.state in (None, "particle")
+        and case.run.warmup == 0
+    )
+    room = sites_of(case) * min(start.part, 1 - start.part)
+    if not plain or model.forward * time[-1] > REACH * room:
+        return None, math.nan, ""
+    mean, variance = theory.step_crossings(model.forward * time)
+    return mean, float(variance[-1]), "approximate: an infinite chain (Johansson 2000), late times"

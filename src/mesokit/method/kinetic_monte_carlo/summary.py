@@ -37,6 +37,8 @@ WORDS = {
 }
 LONGEST = 1e10  # seconds: longer ones are not told apart
 EQUILIBRIUM = {  # what theory expects in it alone
+    "height-differences",
+    "height-steps",
     "lattice-energy",
     "magnetisation",
     "site-correlation",

@@ -11,6 +11,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.expected import growth_exponent, known_mean, width
+from mesokit.method.kinetic_monte_carlo.expected_structure import saturated_width
 from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
 from mesokit.method.kinetic_monte_carlo.observe.shared.parts import (
     PARTS,
@@ -21,7 +22,7 @@ from mesokit.method.kinetic_monte_carlo.observe.shared.parts import (
 )
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
-from mesokit.statistics import TimeSeries
+from mesokit.statistics import TimeSeries, blocking_error
 
 FLAT = 0.01  # of the last mean square width: a first one below is flat
 
@@ -95,3 +96,8 @@ class RoughnessAccumulator(BlockAccumulator):
         expected, note = width(self.case, time[[0, -1]], float(first))
         known = float(expected[1] ** 2) if expected is not None else math.nan
         yield Comparison("last mean square width", square[0], errors[0], known, "a^2", note)
+        known, note = saturated_width(self.case)
+        if not math.isnan(known):
+            squares = rows[:, 1:].mean(axis=1)
+            what = "saturated mean square width"
+            yield Comparison(what, squares.mean(), blocking_error(squares), known, "a^2", note)
