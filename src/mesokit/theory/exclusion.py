@@ -1,6 +1,9 @@
-"""The totally asymmetric exclusion process: exact currents and profiles."""
+"""The exclusion process: exact currents, profiles, and displacements in a single file."""
 
 import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mesokit.theory._check import whole
 
@@ -20,6 +23,25 @@ def ring_current(particles: int, sites: int) -> float:
     if particles > sites:
         raise ValueError(f"particles = {particles!r}: expected at most {sites} sites")
     return particles * (sites - particles) / (sites * (sites - 1))
+
+
+def single_file_displacement(time: ArrayLike, part: float, rate: float) -> NDArray[np.float64]:
+    """Mean square displacement of a particle in a long single file, in squares of the distance.
+
+    Particles hop to empty neighbours on a chain and cannot pass each other: (1 - c)/c sqrt(4 D t /
+    pi), where D is that of a lone particle. It holds once particles have hit their neighbours, and
+    until they have crossed the chain.
+
+    Parameters: `time` since any origin; `part` c of the sites with particles; `rate` D of hops in
+    each direction. Raises ValueError unless 0 < c < 1. Source: R. Arratia, Ann. Probab. 11, 362
+    (1983).
+
+    >>> round(float(single_file_displacement(100.0, 0.5, 1.0)), 4)
+    11.2838
+    """
+    if not 0 < part < 1:
+        raise ValueError(f"part = {part!r}: expected a number between 0 and 1")
+    return (1 - part) / part * np.sqrt(4 * rate * np.asarray(time, float) / math.pi)
 
 
 def open_current(sites: int, enter: float, leave: float) -> float:
