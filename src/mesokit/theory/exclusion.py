@@ -1,4 +1,4 @@
-"""The totally asymmetric exclusion process: exact currents and profiles."""
+"""The exclusion process: exact currents, profiles, and displacements in a single file."""
 
 import math
 
@@ -63,6 +63,25 @@ def step_crossings(time: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.flo
     not_negative(time=float(found.min(initial=0.0)))
     root = np.cbrt(found)
     return found / 4 + 2 ** (-4 / 3) * 1.77109 * root, 2 ** (-8 / 3) * 0.81319 * root**2
+
+
+def single_file_displacement(time: ArrayLike, part: float, rate: float) -> NDArray[np.float64]:
+    """Mean square displacement of a particle in a long single file, in squares of the distance.
+
+    Particles hop to empty neighbours on a chain and cannot pass each other: (1 - c)/c sqrt(4 D t /
+    pi), where D is that of a lone particle. It holds once particles have hit their neighbours, and
+    until they have crossed the chain.
+
+    Parameters: `time` since any origin; `part` c of the sites with particles; `rate` D of hops in
+    each direction. Raises ValueError unless 0 < c < 1. Source: R. Arratia, Ann. Probab. 11, 362
+    (1983).
+
+    >>> round(float(single_file_displacement(100.0, 0.5, 1.0)), 4)
+    11.2838
+    """
+    if not 0 < part < 1:
+        raise ValueError(f"part = {part!r}: expected a number between 0 and 1")
+    return (1 - part) / part * np.sqrt(4 * rate * np.asarray(time, float) / math.pi)
 
 
 def open_current(sites: int, enter: float, leave: float) -> float:

@@ -67,6 +67,7 @@ class Events:
         )
         self.seconds, self._packing = {"events": 0.0}, Packing()
         self.blocks: Blocks | None = None
+        self._began: NDArray[Any] = np.zeros(0, states.dtype)
         home = None
         if given.sublattices is not None:
             block = given.sublattices.of(len(size))
@@ -108,6 +109,8 @@ class Events:
     def _tag(self) -> None:
         """Begin to record: each particle has come no way, each site has just taken its state."""
         record = self.lattice.record
+        if record.on:
+            self._began = self.sites()
         if len(record.tags):
             record.tags.fill(LOST)
             record.tags[self.places] = np.arange(self.n)
@@ -182,25 +185,35 @@ class Events:
             found += self.blocks.happened.reshape(self.threads.size, -1).sum(axis=0)
         return found.reshape(self._shape)
 
-    def tracers(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """How far the particle that was at each site after the warm-up has come since (n, d), in
-        distances of neighbours; and whether it is still there (n,)."""
+    def began(self) -> NDArray[np.integer]:
+        """States (n,) of all sites after the warm-up, by number, where anything is recorded."""
+        return self._began
+
+    def tracers(self, ids: Integers | None = None) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """How far the particle that was at each site after the warm-up, or at some, has come since
+        (n, d), in distances of neighbours; and whether it is still there (n,)."""
         grid, record, kind = self.lattice.grid, self.lattice.record, self._kind
-        d = len(self.size)
-        moved = record.moved.reshape(-1, d)[: self.n]
-        first = np.moveaxis(np.indices(grid.size), 0, -1).reshape(-1, d)
-        odd = [(r @ np.array(kind.parity)) % 2 for r in (first, first + moved)]
+        ids = np.arange(self.n) if ids is None else ids
+        d, parity = len(self.size), np.array(kind.parity)
+        moved = record.moved.reshape(-1, d)[ids]
+        first = np.stack(np.unravel_index(ids, grid.size), axis=-1)
+        odd = [(r @ parity) % 2 for r in (first, first + moved)]
         shifts = (odd[1] - odd[0])[:, None] * np.array(kind.shift)
         there = record.tags[self.places]
         kept = np.zeros(self.n, bool)
         kept[there[there >= 0]] = True
-        return moved * np.array(kind.spacing) + shifts, kept
+        return moved * np.array(kind.spacing) + shifts, kept[ids]
 
     def waits(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """How many sites have left each state after times in each bin (states, bins), and the sums
         of these times and of their squares (states, 2)."""
         record = self.lattice.record
         return record.waits.reshape(self.states, -1), record.sums.reshape(self.states, 2)
+
+    def waiting(self) -> NDArray[np.float64]:
+        """How long sites have been in their states, the sum over all in each state (states,)."""
+        now = self.time - self.lattice.record.since[self.places]
+        return np.bincount(self.sites(), now, minlength=self.states).astype(float)
 
     def state(self) -> State:
         """States by number of the site, the clock, the events so far and the order of lists."""
@@ -218,7 +231,7 @@ class Events:
 
     def _recorded(self) -> State:
         record = self.lattice.record
-        state: State = {}
+        state: State = {"began": self._began} if record.on else {}
         if len(record.tags):
             moved = record.moved[: self.n * len(self.size)]
             state |= {"tags": record.tags[self.places], "moved": moved}
@@ -240,6 +253,8 @@ class Events:
         self.start(state["states"])
         set_order(self.choice, order)
         record = self.lattice.record
+        if record.on:
+            self._began = np.array(state["began"])
         if len(record.tags):
             record.tags[self.places] = state["tags"]
             record.moved[: len(state["moved"])] = state["moved"]
