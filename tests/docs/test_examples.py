@@ -19,8 +19,16 @@ SCRIPTS = {  # of some seconds, and what they draw and say
         "chains",
         r"0\.6096. at time 5, -0\.462.. at 20[^$]* K 0\.817 holds bonds, bond length 1\.665",
     ),
+    "draw_clock": (
+        "clock",
+        r"right clock: drift (0\.99|1\.00)\d [^$]*wrong clock: drift 0\.(49|50)\d ",
+    ),
     "draw_collapse": ("collapse_1d", r"(\d) on a wall: .*\(law"),
     "draw_column": ("column", r"largest difference from \(N - i\) m g: \d\.\de-05"),
+    "draw_escape": (
+        "escape",
+        r"rate from \d+ escapes: 0\.012\d\d [^$]*mean time: 0\.01236; Kramers: 0\.01339",
+    ),
     "draw_ping_pong": ("ping_pong", ""),
     "draw_two_grains": ("two_grains", r"Hertz: restitution 1\.00000 \(theory 1\.00000\)"),
 }

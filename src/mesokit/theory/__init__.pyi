@@ -101,8 +101,12 @@ from mesokit.theory.ising import yang_magnetisation as yang_magnetisation
 from mesokit.theory.kolmogorov import kolmogorov_onset_time as kolmogorov_onset_time
 from mesokit.theory.kolmogorov import kolmogorov_velocity as kolmogorov_velocity
 from mesokit.theory.kolmogorov import kolmogorov_viscosity as kolmogorov_viscosity
+from mesokit.theory.kramers import kramers_rate as kramers_rate
 from mesokit.theory.kremer_grest import BondLength as BondLength
 from mesokit.theory.kremer_grest import kremer_grest_bond as kremer_grest_bond
+from mesokit.theory.master_equation import occupation as occupation
+from mesokit.theory.master_equation import slowest_relaxation as slowest_relaxation
+from mesokit.theory.master_equation import steady_occupation as steady_occupation
 from mesokit.theory.maxwell import maxwell_component_cdf as maxwell_component_cdf
 from mesokit.theory.maxwell import maxwell_component_pdf as maxwell_component_pdf
 from mesokit.theory.maxwell import maxwell_speed_cdf as maxwell_speed_cdf

@@ -4,11 +4,12 @@ from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, show, tag
 from mesokit.errors import CaseError
-from mesokit.method.kinetic_monte_carlo.expected import coverages
+from mesokit.method.kinetic_monte_carlo.expected import before_steady, coverages, relaxation
 from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
@@ -52,15 +53,19 @@ class CoverageAccumulator(BlockAccumulator):
         self.series.add(engine.time, parts)
 
     def result(self) -> Result:
+        time, parts = self.series.time(), self.series.values()
         return self.report(
-            {"time": self.series.time(), "state": np.array(self.names)},
-            self.series.values(),
-            self.comparisons(self.case),
+            {"time": time, "state": np.array(self.names)},
+            parts,
+            self.comparisons(parts),
+            expected=relaxation(self.case, time, parts),
+            theory="master equation",
         )
 
-    def comparisons(self, case: Case) -> Iterator[Comparison]:
+    def comparisons(self, parts: NDArray[np.float64]) -> Iterator[Comparison]:
         """The mean of each."""
-        mean, error, known = self.blocks.mean(), self.blocks.error(), coverages(case)
+        mean, error, known = self.blocks.mean(), self.blocks.error(), coverages(self.case)
+        early = before_steady(self.case, parts[0])
         for k, name in enumerate(self.names):
             expected, note = known.get(name, (np.nan, ""))
-            yield Comparison(f"mean part {name}", mean[k], error[k], expected, "", note)
+            yield Comparison(f"mean part {name}", mean[k], error[k], expected, "", early or note)
