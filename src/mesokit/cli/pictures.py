@@ -86,8 +86,8 @@ _choices = options(  # the part of the flow that is drawn
     click.option(
         "--at",
         type=Finite(),
-        help="Place along the third axis where solids are shown; of spheres those behind it, of sites "
-        "the layer there.",
+        help="Place along the third axis where solids are shown; of spheres those behind it, of "
+        "sites the layer there.",
     ),
     click.option(
         "--colour",

@@ -41,8 +41,8 @@ from mesokit.theory.enskog import enskog_rate as enskog_rate
 from mesokit.theory.exclusion import open_current as open_current
 from mesokit.theory.exclusion import ring_current as ring_current
 from mesokit.theory.exclusion import ring_diffusion as ring_diffusion
-from mesokit.theory.exclusion import step_crossings as step_crossings
 from mesokit.theory.exclusion import single_file_displacement as single_file_displacement
+from mesokit.theory.exclusion import step_crossings as step_crossings
 from mesokit.theory.finite_size import diffusion_in_box as diffusion_in_box
 from mesokit.theory.finite_size import viscosity_renormalised as viscosity_renormalised
 from mesokit.theory.flight_moduli import flight_moduli as flight_moduli
