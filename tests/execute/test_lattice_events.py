@@ -130,6 +130,22 @@ def test_slices_of_time_change_no_bit(cuts, seed):
     assert whole.happened().sum() > 0
 
 
+@pytest.mark.parametrize("select", ["classes", "attempts"])
+def test_a_large_lattice_has_the_same_bits_in_any_slices(select):
+    """Memory of coming events is fetched there, by guesses that depend on where a slice begins."""
+
+    def engine():
+        return lattice_engine((512, 400), Ising(kT=1.7, field=0.1), timestep=0.02, select=select)
+
+    whole, cut = engine(), engine()
+    whole.advance(12)
+    for steps in (1, 4, 7):
+        cut.advance(steps)
+    assert whole.happened().sum() > 5000
+    for name, array in whole.state().items():
+        np.testing.assert_array_equal(array, cut.state()[name], err_msg=name)
+
+
 def test_the_clock_keeps_short_waits_late_in_a_run():
     """Times of 1e9 and waits of 1e-8: a sum of doubles would lose a tenth of each of these."""
     engine = lattice_engine((64, 64), fast_gas(), timestep=1.0)
