@@ -144,6 +144,11 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
         {"[[observe]]": '[trajectory]\nevery = 1\nfields = ["site"]\nsubset = 5\n[[observe]]'},
         ("trajectory.subset = 5", "written whole"),
     ),
+    "order of heights": (
+        {'rule = "ising"': 'rule = "rsos"', "kT = 2.0\n": "", '"magnetisation"': '"order-parameter"'}
+        | {'start = { rule = "random" }': ""},
+        ("observe[#1]", "'rsos' has no states"),
+    ),
     "heights of spins": ({'"magnetisation"': '"roughness"'}, ("observe[#1]", "no heights")),
     "correlation along no axis": ({'"magnetisation"': '"site-correlation"\ndirection = "z"'},
                                  ("observe[#1].direction", "2D")),

@@ -18,6 +18,7 @@ from mesokit.method.kinetic_monte_carlo.observe.coverage import Coverage
 from mesokit.method.kinetic_monte_carlo.observe.event_rates import EventRates
 from mesokit.method.kinetic_monte_carlo.observe.lattice_energy import LatticeEnergy
 from mesokit.method.kinetic_monte_carlo.observe.magnetisation import Magnetisation
+from mesokit.method.kinetic_monte_carlo.observe.order_parameter import OrderParameter
 from mesokit.method.kinetic_monte_carlo.observe.roughness import Roughness
 from mesokit.method.kinetic_monte_carlo.observe.site_profile import SiteProfile
 from mesokit.method.kinetic_monte_carlo.start import AlternatingStart, RandomStart, UniformStart
@@ -124,12 +125,21 @@ def test_three_states_of_few_sites_are_in_equilibrium():
     )
     weight = np.exp(alike / kT)
     expected = -(weight @ alike) / weight.sum() / 9
-    case = lattice_case(
-        (3, 3), Potts(q=3, kT=kT), steps=30_000, timestep=4.0, observe=[LatticeEnergy(every=1)]
+    parts = np.stack([(states == q).mean(axis=1) for q in range(3)])
+    order, square = (3 * parts.max(axis=0) - 1) / 2, (3 * (parts**2).sum(axis=0) - 1) / 2
+    mean, second, fourth = (weight @ x / weight.sum() for x in (order, square, square**2))
+    observe = [LatticeEnergy(every=1), OrderParameter(every=1)]
+    case = lattice_case((3, 3), Potts(q=3, kT=kT), steps=30_000, timestep=4.0, observe=observe)
+    found = results_of(case)
+    energy, *orders = (
+        found["lattice-energy"].comparisons[0],
+        *found["order-parameter"].comparisons,
     )
-    energy = results_of(case)["lattice-energy"].comparisons[0]
-    assert abs(energy.measured - expected) < 4 * energy.error
-    assert energy.measured == pytest.approx(expected, rel=0.01)
+    wanted = [expected, mean, second, 1 - fourth / (2 * second**2)]
+    off = [(one.measured - x) / one.error for one, x in zip((energy, *orders), wanted, strict=True)]
+    assert np.abs(off).max() < 4
+    measured = [one.measured for one in (energy, *orders)]
+    assert measured == pytest.approx(wanted, rel=0.015)
 
 
 def test_two_states_are_spins_with_half_the_coupling():
