@@ -145,8 +145,12 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
         ("trajectory.subset = 5", "written whole"),
     ),
     "order of heights": (
-        {'rule = "ising"': 'rule = "rsos"', "kT = 2.0\n": "", '"magnetisation"': '"order-parameter"'}
-        | {'start = { rule = "random" }': ""},
+        {
+            'rule = "ising"': 'rule = "rsos"',
+            "kT = 2.0\n": "",
+            '"magnetisation"': '"order-parameter"',
+            'start = { rule = "random" }': "",
+        },
         ("observe[#1]", "'rsos' has no states"),
     ),
     "heights of spins": ({'"magnetisation"': '"roughness"'}, ("observe[#1]", "no heights")),
