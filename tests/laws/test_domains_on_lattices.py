@@ -64,7 +64,7 @@ def test_a_chain_that_is_quenched_has_the_domains_of_glauber():
 
 
 def test_domains_in_a_plane_grow_as_the_root_of_time():
-    case = lattice_case((256, 256), Ising(kT=0.0), steps=100, observe=[DomainLength(every=2)])
+    case = lattice_case((512, 512), Ising(kT=0.0), steps=100, observe=[DomainLength(every=4)])
     found = {one.key: one for one in results_of(case)["domain-length"].comparisons}
     exponent = found["exponent-of-the-length-from-walls"]
     assert exponent.expected == 0.5 and exponent.error < 0.04
