@@ -58,8 +58,13 @@ def drawn(engine, seed):
     return engine.sites().tobytes(), engine.course.clock[0]
 
 
-@pytest.mark.parametrize("moves", FOLLOW)
-@pytest.mark.parametrize("select", ["classes", "groups", "tree", "linear", "attempts"])
+CHOICES = [(select, "flip") for select in ("classes", "groups", "tree", "linear", "attempts")]
+CHOICES += [(select, "exchange") for select in ("classes", "groups", "attempts")]
+# each of these compiles two kernels more
+MORE = [pytest.param(select, "exchange", marks=pytest.mark.long) for select in ("tree", "linear")]
+
+
+@pytest.mark.parametrize(("select", "moves"), [*CHOICES, *MORE])
 def test_the_next_event_is_drawn_by_its_rate_and_waits_for_that_of_all(select, moves):
     model = Ising(kT=KT, field=FIELD, moves=moves)
     engine = lattice_engine(SIZE, model, select=select)
