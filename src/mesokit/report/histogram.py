@@ -28,7 +28,10 @@ def draw(result: Result, ax: Any) -> None:
     label = ERROR if np.isfinite(result.error).any() else None
     ax.errorbar(middle, result.value, result.error, label=label, **bars)
     if result.expected is not None and np.isfinite(result.expected).any():
-        ax.plot(middle, result.expected, color="black", lw=1.3, label=theory_of(result))
+        look: Any = {"color": "black", "lw": 1.3, "label": theory_of(result)}
+        if result.extra.get("discrete"):  # no line joins values between which there are none
+            look |= {"ls": "none", "marker": "_", "ms": 18, "mew": 1.5}
+        ax.plot(middle, result.expected, **look)
     if "beside" in result.extra:
         label = str(result.extra["beside_label"])
         ax.plot(middle, result.extra["beside"], ":", color=COLOURS[2], lw=1.8, label=label)

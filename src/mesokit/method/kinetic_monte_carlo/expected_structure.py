@@ -239,6 +239,8 @@ def current(case: Case, particles: int) -> tuple[float, float, str]:
     """Mean current of particles on a chain, the variance of crossings per time, and a note; of a
     ring with so many particles."""
     model, n = case.lattice.model, sites_of(case)
+    if not math.isnan(langmuir(case)):
+        return 0.0, math.nan, "no direction is preferred"
     if not isinstance(model, Exclusion):
         return math.nan, math.nan, ""
     if ring_of_particles(case):
