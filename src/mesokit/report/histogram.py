@@ -8,7 +8,13 @@ from mesokit.report.finish.legend import legend_above, legend_of
 from mesokit.report.style import COLOURS, ERROR, MEASURED, labelled, lettered, points, theory_of
 from mesokit.seam.result import Result
 
-SYMBOLS = {"Rg": "$R_g$", "R": "$R$", "cosine": r"$\cos\theta$", "duration": "$t$"}
+SYMBOLS = {
+    "dh": r"$\Delta h$",
+    "Rg": "$R_g$",
+    "R": "$R$",
+    "cosine": r"$\cos\theta$",
+    "duration": "$t$",
+}
 NOISY = 0.3  # relative error above which a ratio says nothing
 
 
