@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from mesokit.method.kinetic_monte_carlo.observe.shared.neighbours import Neighbours
 
 from mesokit import theory
 from mesokit.method.kinetic_monte_carlo.expected_structure import (
@@ -14,6 +13,7 @@ from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
 from mesokit.method.kinetic_monte_carlo.model.potts import Potts
 from mesokit.method.kinetic_monte_carlo.observe.domain_length import DomainLength
+from mesokit.method.kinetic_monte_carlo.observe.shared.neighbours import Neighbours
 from mesokit.method.kinetic_monte_carlo.start import UniformStart
 from mesokit.statistics import blocking_error
 from tests.helpers.lattices import FakeLattice, lattice_case, near, results_of
@@ -67,10 +67,11 @@ def test_domains_in_a_plane_grow_as_the_root_of_time():
     case = lattice_case((256, 256), Ising(kT=0.0), steps=100, observe=[DomainLength(every=2)])
     found = {one.key: one for one in results_of(case)["domain-length"].comparisons}
     exponent = found["exponent-of-the-length-from-walls"]
-    assert exponent.expected == 0.5 and exponent.error < 0.04
+    assert exponent.expected == 0.5 and exponent.error < 0.05
     assert abs(exponent.measured - 0.5) < 4 * exponent.error
     last = found["last-length-from-walls"]  # measured at 251.5 on 1024 x 1024: 28.2
-    assert abs(last.measured - 28.2 * (100 / 251.5) ** 0.5) < 4 * last.error < 4.0
+    assert abs(last.measured - 28.2 * (100 / 251.5) ** 0.5) < 4 * last.error
+    assert last.error < 0.08 * last.measured
 
 
 @pytest.mark.long
