@@ -6,6 +6,7 @@ import pytest
 from mesokit import theory
 from mesokit.method.kinetic_monte_carlo.expected_structure import (
     domain_exponent,
+    plain_spins,
     walls_in_equilibrium,
 )
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
@@ -105,5 +106,8 @@ def test_exponents_are_those_of_what_is_conserved():
     )
     assert domain_exponent(lattice_case((32, 32), Ising(kT=1.0)))[0] == 0.5
     assert domain_exponent(lattice_case((32, 32), Potts(q=3, kT=0.5)))[0] == 0.5
+    kept = lattice_case((32, 32), Ising(kT=1.3, moves="exchange"))
+    assert domain_exponent(kept)[0] == pytest.approx(1 / 3)
+    assert walls_in_equilibrium(kept) > 0 and not plain_spins(kept, "square")
     for model in (Ising(kT=2.5), Ising(kT=1.0, field=0.1), Ising(coupling=-1.0), swap):
         assert np.isnan(domain_exponent(lattice_case((32, 32), model))[0])
