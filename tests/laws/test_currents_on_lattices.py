@@ -124,3 +124,4 @@ def test_hops_in_a_plane_carry_nothing_on_average():
     case = lattice_case((16, 16), GAS, steps=200, observe=[Current(every=1, axis="y")])
     mean = results_of(case)["current"]["mean current"]
     assert abs(mean.measured) < 4 * mean.error < 0.1
+    assert mean.expected == 0 and mean.note == "no direction is preferred"

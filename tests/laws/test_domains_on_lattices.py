@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from mesokit.method.kinetic_monte_carlo.observe.shared.neighbours import Neighbours
 
 from mesokit import theory
 from mesokit.method.kinetic_monte_carlo.expected_structure import (
     domain_exponent,
+    plain_spins,
     walls_in_equilibrium,
 )
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
@@ -14,6 +14,7 @@ from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
 from mesokit.method.kinetic_monte_carlo.model.potts import Potts
 from mesokit.method.kinetic_monte_carlo.observe.domain_length import DomainLength
+from mesokit.method.kinetic_monte_carlo.observe.shared.neighbours import Neighbours
 from mesokit.method.kinetic_monte_carlo.start import UniformStart
 from mesokit.statistics import blocking_error
 from tests.helpers.lattices import FakeLattice, lattice_case, near, results_of
@@ -67,10 +68,11 @@ def test_domains_in_a_plane_grow_as_the_root_of_time():
     case = lattice_case((512, 512), Ising(kT=0.0), steps=100, observe=[DomainLength(every=4)])
     found = {one.key: one for one in results_of(case)["domain-length"].comparisons}
     exponent = found["exponent-of-the-length-from-walls"]
-    assert exponent.expected == 0.5 and exponent.error < 0.04
+    assert exponent.expected == 0.5 and exponent.error < 0.05
     assert abs(exponent.measured - 0.5) < 4 * exponent.error
     last = found["last-length-from-walls"]  # measured at 251.5 on 1024 x 1024: 28.2
-    assert abs(last.measured - 28.2 * (100 / 251.5) ** 0.5) < 4 * last.error < 4.0
+    assert abs(last.measured - 28.2 * (100 / 251.5) ** 0.5) < 4 * last.error
+    assert last.error < 0.08 * last.measured
 
 
 @pytest.mark.long
@@ -104,5 +106,8 @@ def test_exponents_are_those_of_what_is_conserved():
     )
     assert domain_exponent(lattice_case((32, 32), Ising(kT=1.0)))[0] == 0.5
     assert domain_exponent(lattice_case((32, 32), Potts(q=3, kT=0.5)))[0] == 0.5
+    kept = lattice_case((32, 32), Ising(kT=1.3, moves="exchange"))
+    assert domain_exponent(kept)[0] == pytest.approx(1 / 3)
+    assert walls_in_equilibrium(kept) > 0 and not plain_spins(kept, "square")
     for model in (Ising(kT=2.5), Ising(kT=1.0, field=0.1), Ising(coupling=-1.0), swap):
         assert np.isnan(domain_exponent(lattice_case((32, 32), model))[0])

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from mesokit.method.kinetic_monte_carlo.observe.shared.islands_of import islands
-from mesokit.method.kinetic_monte_carlo.observe.shared.neighbours import Neighbours
 
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
 from mesokit.method.kinetic_monte_carlo.model.family import Family
@@ -11,6 +9,8 @@ from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
 from mesokit.method.kinetic_monte_carlo.observe.island_sizes import IslandSizes
 from mesokit.method.kinetic_monte_carlo.observe.islands import Islands
+from mesokit.method.kinetic_monte_carlo.observe.shared.islands_of import islands
+from mesokit.method.kinetic_monte_carlo.observe.shared.neighbours import Neighbours
 from mesokit.method.kinetic_monte_carlo.start import UniformStart
 from tests.helpers.lattices import FakeLattice, lattice_case, near, results_of
 

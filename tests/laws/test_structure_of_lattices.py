@@ -2,9 +2,6 @@
 
 import numpy as np
 import pytest
-from mesokit.method.kinetic_monte_carlo.observe.shared.fields import relative
-from mesokit.method.kinetic_monte_carlo.observe.shared.separations import Separations
-from mesokit.method.kinetic_monte_carlo.observe.shared.waves import Waves
 
 from mesokit import theory
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
@@ -12,6 +9,9 @@ from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
 from mesokit.method.kinetic_monte_carlo.model.family import Family
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.potts import Potts
+from mesokit.method.kinetic_monte_carlo.observe.shared.fields import relative
+from mesokit.method.kinetic_monte_carlo.observe.shared.separations import Separations
+from mesokit.method.kinetic_monte_carlo.observe.shared.waves import Waves
 from mesokit.method.kinetic_monte_carlo.observe.site_correlation import SiteCorrelation
 from mesokit.method.kinetic_monte_carlo.observe.site_structure_factor import SiteStructureFactor
 from mesokit.method.kinetic_monte_carlo.start import RandomStart

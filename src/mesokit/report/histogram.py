@@ -8,7 +8,13 @@ from mesokit.report.finish.legend import legend_above, legend_of
 from mesokit.report.style import COLOURS, ERROR, MEASURED, labelled, lettered, points, theory_of
 from mesokit.seam.result import Result
 
-SYMBOLS = {"Rg": "$R_g$", "R": "$R$", "cosine": r"$\cos\theta$", "duration": "$t$"}
+SYMBOLS = {
+    "dh": r"$\Delta h$",
+    "Rg": "$R_g$",
+    "R": "$R$",
+    "cosine": r"$\cos\theta$",
+    "duration": "$t$",
+}
 NOISY = 0.3  # relative error above which a ratio says nothing
 
 
@@ -28,7 +34,10 @@ def draw(result: Result, ax: Any) -> None:
     label = ERROR if np.isfinite(result.error).any() else None
     ax.errorbar(middle, result.value, result.error, label=label, **bars)
     if result.expected is not None and np.isfinite(result.expected).any():
-        ax.plot(middle, result.expected, color="black", lw=1.3, label=theory_of(result))
+        look: Any = {"color": "black", "lw": 1.3, "label": theory_of(result)}
+        if result.extra.get("discrete"):  # no line joins values between which there are none
+            look |= {"ls": "none", "marker": "_", "ms": 18, "mew": 1.5}
+        ax.plot(middle, result.expected, **look)
     if "beside" in result.extra:
         label = str(result.extra["beside_label"])
         ax.plot(middle, result.extra["beside"], ":", color=COLOURS[2], lw=1.8, label=label)

@@ -42,6 +42,11 @@ def langmuir(case: Case) -> float:
 
 def plain_spins(case: Case, kind: str) -> bool:
     """Whether spins that flip in no field are on a periodic lattice of a kind, in equilibrium."""
+    return in_no_field(case, kind) and not keeps_states(case.lattice.model)
+
+
+def in_no_field(case: Case, kind: str) -> bool:
+    """The same of spins that flip or exchange."""
     model = case.lattice.model
     return (
         type(model) is Ising
@@ -95,7 +100,7 @@ def structure_factor(case: Case, observable: Any, k: Array) -> Curve:
 def walls_in_equilibrium(case: Case) -> float:
     """Unlike pairs of neighbours per site in equilibrium: 0 where they are not known."""
     model = case.lattice.model
-    if not plain_spins(case, "square") or model.coupling <= 0:
+    if not in_no_field(case, "square") or model.coupling <= 0:
         return 0.0
     if not orders(case):
         return 0.0
@@ -118,6 +123,7 @@ def domain_length(case: Case, time: Array) -> Curve:
         and case.lattice.kind == "chain"
         and not case.lattice.ends
         and model.kT == model.field == 0
+        and not keeps_states(model)
         and model.coupling > 0
         and model.dynamics == "glauber"
     )
@@ -140,6 +146,8 @@ def domain_exponent(case: Case) -> Known:
 
 def keeps_states(model: Any) -> bool:
     """Whether no event changes how many sites are in each state."""
+    if getattr(model, "moves", "") == "exchange":
+        return True
     return isinstance(model, TableModel) and all(
         one.neighbour is not None
         and all(
@@ -239,6 +247,8 @@ def current(case: Case, particles: int) -> tuple[float, float, str]:
     """Mean current of particles on a chain, the variance of crossings per time, and a note; of a
     ring with so many particles."""
     model, n = case.lattice.model, sites_of(case)
+    if not math.isnan(langmuir(case)):
+        return 0.0, math.nan, "no direction is preferred"
     if not isinstance(model, Exclusion):
         return math.nan, math.nan, ""
     if ring_of_particles(case):

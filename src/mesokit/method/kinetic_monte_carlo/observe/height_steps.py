@@ -65,7 +65,11 @@ class HeightStepsAccumulator(BlockAccumulator):
             self.comparisons(expected, square, note),
             expected=None if expected is None else expected[use],
             theory=note,
-            extra={"edges": np.append(step[use] - 0.5, step[use][-1] + 0.5), "of": "step"},
+            extra={
+                "edges": np.append(step[use] - 0.5, step[use][-1] + 0.5),
+                "of": "step",
+                "discrete": True,
+            },
         )
 
     def comparisons(self, expected: Array | None, square: float, note: str) -> Iterator[Comparison]:
