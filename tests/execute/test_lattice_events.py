@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mesokit import Simulation
 from mesokit.method.kinetic_monte_carlo.engine import engine as engine_module
 from mesokit.method.kinetic_monte_carlo.lattice.grid import by_number, grid_of, neighbour
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
@@ -14,8 +15,11 @@ from mesokit.method.kinetic_monte_carlo.model.family import Family
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
 from mesokit.method.kinetic_monte_carlo.model.solid_on_solid import SolidOnSolid
+from mesokit.method.kinetic_monte_carlo.observe.tracer_displacement import TracerDisplacement
+from mesokit.method.kinetic_monte_carlo.observe.waiting_times import WaitingTimes
+from mesokit.run.schedule import Schedule
 from mesokit.seam.engine import Interrupted
-from tests.helpers.lattices import lattice_engine
+from tests.helpers.lattices import lattice_case, lattice_engine
 
 GAS = LatticeGas(
     species=["empty", "A", "B"],
@@ -144,6 +148,36 @@ def test_a_large_lattice_has_the_same_bits_in_any_slices(select):
     assert whole.happened().sum() > 5000
     for name, array in whole.state().items():
         np.testing.assert_array_equal(array, cut.state()[name], err_msg=name)
+
+
+def test_records_go_on_to_the_same_bits():
+    """Tracers and waiting times, of particles that hop, come and go; and what is made of them."""
+    observe = [TracerDisplacement(every=1, max_lag=8, state="A"), WaitingTimes(every=2, state="A")]
+    case = lattice_case((24, 20), GAS, timestep=0.03, steps=60, warmup=6, observe=observe)
+    whole = Simulation(case)
+    whole.run()
+    cut, schedule = Simulation(case), Schedule(case)
+    for target in (3, 6, 14, 15, 32, 66):
+        cut.replicas.first.go(schedule.legs(cut.engine.step, target))
+        engine = {name: array.copy() for name, array in cut.engine.state().items()}
+        made = {
+            name: {key: np.array(array) for key, array in one.state().items()}
+            for name, one in cut.accumulators.items()
+        }
+        cut = Simulation(case)
+        cut.engine.restore(engine)
+        for name, one in cut.accumulators.items():
+            one.restore(made[name])
+    assert {"tags", "moved", "since", "waits", "sums", "began"} <= set(whole.engine.state())
+    same(whole.engine.state(), cut.engine.state())
+    for name, one in whole.accumulators.items():
+        same(one.state(), cut.accumulators[name].state())
+
+
+def same(state, other):
+    assert set(state) == set(other)
+    for name, array in state.items():
+        np.testing.assert_array_equal(array, other[name])
 
 
 def test_the_clock_keeps_short_waits_late_in_a_run():

@@ -17,8 +17,9 @@ from mesokit.method.kinetic_monte_carlo.model.table import TableModel
 
 Array = NDArray[np.floating[Any]]
 SIDE = 6  # sites along each axis of a patch in which a particle is alone
-HOPS = 10.0  # between two particles, after which single file is seen
-FINITE = 0.01  # of the time in which a ring of particles is crossed: then its length matters
+DILUTE = 0.05  # part of the sites up to which particles are as if they were alone
+HOPS = 30.0  # between two particles, after which a single file is seen
+FINITE = 0.05  # of a single file, that part which all particles of a ring move together
 ALONE = "approximate: alone"
 
 
@@ -39,20 +40,12 @@ def walk(case: Case, state: int) -> Walk | None:
     moves = model.list_moves(kind)
     if moves is None:
         return None
-    d, behind = kind.dimension, 0 if state else 1
-    size, places = (SIDE,) * d, kind.places((SIDE,) * d)
-    rate, drift, only = 0.0, np.zeros(d), True
-    # a particle at an even site in the middle, and one beside it at an odd site where there are any
-    middle = [SIDE // 2] * d
-    beside = (
-        [
-            r + p * (k == kind.parity.index(1))
-            for k, (r, p) in enumerate(zip(middle, kind.parity, strict=True))
-        ]
-        if any(kind.parity)
-        else middle
-    )
-    starts = [int(np.ravel_multi_index(tuple(r), size)) for r in (middle, beside)]
+    d, behind, size = kind.dimension, 0 if state else 1, (SIDE,) * kind.dimension
+    places = kind.places(size)
+    rate, drift, only = 0.0, np.zeros(d), len(model.states()) == 2
+    # two sites in the middle, next to each other along the last axis: one of each parity
+    first = SIDE // 2 * int(sum(SIDE**k for k in range(d)))
+    starts = first, first + 1
     for start in starts:
         states = [behind] * len(places)
         states[start] = state
@@ -78,7 +71,8 @@ class Tracers:
         self.case, self.number = case, number
         self.sites = int(np.prod(case.box.size))
         self.ring = ring_of_particles(case) and state == 1 and number > 1
-        self.walk = walk(case, state) if number else None
+        known = not case.lattice.ends and (self.ring or number <= max(1, DILUTE * self.sites))
+        self.walk = walk(case, state) if known else None
         self.note = "" if self.walk and self.walk.only and number <= 1 else ALONE
 
     @property
@@ -110,7 +104,7 @@ class Tracers:
             return square, self.note or "a lone walker"
         part, rate = self.number / self.sites, self.walk.rate / 2
         seen = rate * time * part**2 > HOPS * (1 - part) ** 2
-        seen &= rate * time < FINITE * self.sites**2
+        seen &= np.sqrt(math.pi * rate * time) < FINITE * self.sites
         known = np.full(len(time), np.nan)
         known[seen] = theory.single_file_displacement(time[seen], part, rate)
         return (known if seen.any() else None), "approximate: a long single file (Arratia 1983)"

@@ -127,6 +127,7 @@ class WaitingAccumulator(BlockAccumulator):
             self.comparisons(law),
             expected=np.diff(law.part(ends)) / width if known else None,
             theory="exponential" if known else "",
+            extra={"edges": ends},
         )
 
     def comparisons(self, law: Exponential) -> Iterator[Comparison]:
