@@ -17,7 +17,7 @@ EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
 SCRIPTS = {  # of some seconds, and what they draw and say
     "draw_catalyst": (
         "catalyst",
-        r"y = 0\.360: CO 0\.000, O 1\.000[^$]*y = 0\.500: CO 0\.0[^$]*y = 0\.535: CO 1\.000, O 0\.000",
+        r"y = 0\.360: CO 0\.000, O 1\.000[^$]*y = 0\.535: CO 1\.000, O 0\.000",
     ),
     "draw_chains": (
         "chains",
