@@ -15,6 +15,10 @@ pytestmark = pytest.mark.long
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
 SCRIPTS = {  # of some seconds, and what they draw and say
+    "draw_catalyst": (
+        "catalyst",
+        r"y = 0\.360: CO 0\.000, O 1\.000[^$]*y = 0\.535: CO 1\.000, O 0\.000",
+    ),
     "draw_chains": (
         "chains",
         r"0\.6096. at time 5, -0\.462.. at 20[^$]* K 0\.817 holds bonds, bond length 1\.665",
@@ -29,10 +33,12 @@ SCRIPTS = {  # of some seconds, and what they draw and say
         "escape",
         r"rate from \d+ escapes: 0\.012\d\d [^$]*mean time: 0\.01236; Kramers: 0\.01339",
     ),
+    "draw_islands": ("islands", r"exponent of the last two 0\.3\d, rate equations 1/3"),
     "draw_ping_pong": ("ping_pong", ""),
+    "draw_sintering": ("sintering", r"atoms \{2352\}; neck 7\.8 to 2\d\.\d a"),
     "draw_two_grains": ("two_grains", r"Hertz: restitution 1\.00000 \(theory 1\.00000\)"),
 }
-SHORT = ["--set", "run.steps=100", "--set", "run.warmup=20"]
+SHORT, WARMUP = ["--set", "run.steps=100"], ["--set", "run.warmup=20"]
 
 
 @pytest.mark.parametrize("case", EXAMPLES, ids=lambda case: case.stem)
@@ -50,7 +56,8 @@ def test_the_example_runs_and_compares(
 
     mesokit("check", case)
     run = tmp_path / case.stem
-    said = mesokit("run", case, "--output", run, *SHORT)
+    short = [*SHORT, *(WARMUP if "warmup" in case.read_text() else ())]
+    said = mesokit("run", case, "--output", run, *short)
     assert "expected" in said
     plots = [line[1:].split() for line in case.read_text().splitlines() if "mesokit plot" in line]
     assert plots

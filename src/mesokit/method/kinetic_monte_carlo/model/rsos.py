@@ -10,6 +10,9 @@ from mesokit.method.kinetic_monte_carlo.model.heights import KPZ, LOWER, Growth,
 from mesokit.method.kinetic_monte_carlo.model.protocol import Known
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
 
+# J. Kelling and G. Odor, Phys. Rev. E 84, 061150 (2011)
+PLANE: Known = (0.2415, "approximate: Kardar, Parisi and Zhang, by simulation, at late times")
+
 
 @component
 class RestrictedSolidOnSolid(HeightModel):
@@ -31,5 +34,6 @@ class RestrictedSolidOnSolid(HeightModel):
         return [Growth(Process("deposit", (0, 0), rate, (LOWER,)), 1)]
 
     def expected(self, case: Case) -> Mapping[str, Known]:
-        """The exponent of Kardar, Parisi and Zhang on a chain."""
-        return {"growth exponent": KPZ} if case.lattice.kind == "chain" else {}
+        """The exponent of Kardar, Parisi and Zhang."""
+        known = {1: KPZ, 2: PLANE}.get(case.box.dimension)
+        return {} if known is None else {"growth exponent": known}
