@@ -68,11 +68,11 @@ def test_domains_in_a_plane_grow_as_the_root_of_time():
     case = lattice_case((512, 512), Ising(kT=0.0), steps=100, observe=[DomainLength(every=4)])
     found = {one.key: one for one in results_of(case)["domain-length"].comparisons}
     exponent = found["exponent-of-the-length-from-walls"]
-    assert exponent.expected == 0.5 and exponent.error < 0.05
+    assert exponent.expected == 0.5 and exponent.error < 0.04
     assert abs(exponent.measured - 0.5) < 4 * exponent.error
     last = found["last-length-from-walls"]  # measured at 251.5 on 1024 x 1024: 28.2
     assert abs(last.measured - 28.2 * (100 / 251.5) ** 0.5) < 4 * last.error
-    assert last.error < 0.08 * last.measured
+    assert last.error < 1.0
 
 
 @pytest.mark.long
