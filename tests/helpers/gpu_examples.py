@@ -183,6 +183,7 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     lattices.number_alone: lambda p, d: (WHOLE,),
     lattices.weight: lambda p, d: (WHOLE, WHOLE, WHOLE),
     lattices.change_of_weight: lambda p, d: (WHOLE, WHOLE, WHOLE, WHOLE),
+    lattices.change_of_any: lambda p, d: (WHOLE, WHOLE),
     lattices.change_of_own: lambda p, d: (WHOLE, WHOLE),
     lattices.process_of: lambda p, d: (sites(d), WHOLE, 0.5),
     flown: lambda p, d: (vec(d), vec(d), vec(d)),

@@ -3,11 +3,12 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.kernels.later import intrinsic
 from mesokit.scalar.jit import scalar
 
-_ONE = np.uint64(1)
+_ONE, _THREE, _BYTE = np.uint64(1), np.uint64(3), np.uint64(255)
 
 
 @intrinsic
@@ -73,3 +74,30 @@ def nth_bit(word, rank):
         rank -= low if up else 0
         at += half if up else 0
     return at
+
+
+def table_of_bits() -> NDArray[np.uint8]:
+    """Numbers (256 * 8,) of the bits that are set in each byte, by rank.
+
+    >>> table_of_bits()[8 * 0b1010 : 8 * 0b1010 + 2].tolist()
+    [1, 3]
+    """
+    found = np.zeros((256, 8), np.uint8)
+    for byte in range(256):
+        bits = [k for k in range(8) if byte >> k & 1]
+        found[byte, : len(bits)] = bits
+    return found.ravel()
+
+
+@scalar
+def nth_bit_in_table(table, word, rank):
+    """The same as `nth_bit`, of the last byte by a table."""
+    at = np.int64(0)
+    for k in range(3):
+        half = 32 >> k
+        low = np.int64(bits_set(word & ((_ONE << np.uint64(half)) - _ONE)))
+        up = rank >= low
+        word = word >> np.uint64(half if up else 0)
+        rank -= low if up else 0
+        at += half if up else 0
+    return at + np.int64(table[((word & _BYTE) << _THREE) | np.uint64(rank)])

@@ -8,10 +8,11 @@ import numpy as np
 
 from mesokit.method.kinetic_monte_carlo.engine.choice import keeps, put
 from mesokit.method.kinetic_monte_carlo.engine.record import change_recorded
-from mesokit.method.kinetic_monte_carlo.lattice.grid import neighbour
+from mesokit.method.kinetic_monte_carlo.lattice.grid import first_jump, jump, neighbour
 from mesokit.method.kinetic_monte_carlo.model.protocol import (
     MISSING,
     UNLIKE,
+    change_of_any,
     change_of_own,
     change_of_weight,
     number_alone,
@@ -80,14 +81,17 @@ def _change_around(model, sites, choice, part, i, old, j, before):
     # in most models the number of the site's own surroundings changes by one and the same
     own = change_of_own(model, old, new)
     around = np.int64(sites.around[U(i)]) + own
+    every, first = change_of_any(model, old, new), first_jump(sites.grid, i)
     for direction in range(sites.grid.neighbours):
-        k = neighbour(sites.grid, i, direction)
+        k = i + jump(sites.grid, first, direction)
         if k == j:
             other = np.int64(sites.states[U(k)])
             around += change_of_weight(model, direction, new, before, other)
         elif k >= 0:
-            back, state = sites.grid.back[U(direction)], np.int64(sites.states[U(k)])
-            change = change_of_weight(model, back, state, old, new)
+            change = every
+            if every == UNLIKE:
+                back, state = sites.grid.back[U(direction)], np.int64(sites.states[U(k)])
+                change = change_of_weight(model, back, state, old, new)
             set_around(model, sites, choice, part, k, np.int64(sites.around[U(k)]) + change)
     if own == UNLIKE:
         around = surroundings(model, sites, i)

@@ -27,7 +27,7 @@ from mesokit.method.kinetic_monte_carlo.engine.choice import (
 )
 from mesokit.method.kinetic_monte_carlo.engine.stream import next_word, unit_of
 from mesokit.method.kinetic_monte_carlo.lattice.grid import TILE, fetch_site
-from mesokit.scalar.bits import bits_set, equal_bytes, high_product, nth_bit
+from mesokit.scalar.bits import bits_set, equal_bytes, high_product, nth_bit_in_table, table_of_bits
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.prefetch import LINE, prefetch
 
@@ -42,19 +42,19 @@ class Classes(NamedTuple):
     A part of the lattice is what one thread works on at a time: all of it, or a sector.
 
     of: (n,) class of each site or bond. by_surroundings: (m,) class of sites with these. chances:
-    (m,) rates over that of the class. rates: (classes,). parts: how many. home: (tiles,) part of
+    (m,) rates over that of the class. rates: (classes,). parts: how many, nothing for one. home: (tiles,) part of
     each. numbers: (parts, classes) of each class. counts: (tiles, classes). lists: (classes, tiles)
     tiles that have any of a class, those of each part together. ranks: (tiles, classes) where a
     tile is in its list. lengths, first: (parts, classes) tiles in a list, and where it begins.
     highest: (parts, classes) no tile has more. refused: (parts, classes) tiles since that was found
-    that were drawn in vain.
+    that were drawn in vain. bits: see `nth_bit_in_table`.
     """
 
     of: NDArray[np.uint8]
     by_surroundings: NDArray[np.uint8]
     chances: NDArray[np.float64]
     rates: NDArray[np.float64]
-    parts: int
+    parts: tuple[int, ...]
     home: NDArray[np.int32]
     numbers: NDArray[np.int64]
     counts: NDArray[np.uint16]
@@ -64,6 +64,7 @@ class Classes(NamedTuple):
     first: NDArray[np.int64]
     highest: NDArray[np.int32]
     refused: NDArray[np.int64]
+    bits: NDArray[np.uint8]
 
 
 def by_factors_of_two(rates: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -95,7 +96,7 @@ def classes_of(
         np.where(bound > 0, found, width - 1).astype(np.uint8),
         np.divide(rates, bound, out=np.zeros_like(rates), where=bound > 0),
         np.append(distinct, 0.0),
-        parts,
+        (parts,) if parts > 1 else (),
         home,
         np.zeros(parts * width, np.int64),
         np.zeros(tiles * width, np.uint16),
@@ -105,7 +106,13 @@ def classes_of(
         first.astype(np.int64).ravel(),
         np.ones(parts * width, np.int32),
         np.zeros(parts * width, np.int64),
+        table_of_bits(),
     )
+
+
+def parts_of(classes: Classes) -> int:
+    """How many parts of the lattice there are."""
+    return classes.parts[0] if classes.parts else 1
 
 
 def clear(classes: Classes) -> None:
@@ -116,7 +123,7 @@ def clear(classes: Classes) -> None:
     for array in (classes.numbers, classes.counts, classes.lengths, classes.refused):
         array.fill(0)
     classes.highest.fill(1)
-    members = np.bincount(classes.home, minlength=classes.parts)
+    members = np.bincount(classes.home, minlength=parts_of(classes))
     classes.numbers[idle::width] = TILE * members
     classes.counts[idle::width] = TILE
     classes.lengths[idle::width] = members
@@ -138,7 +145,7 @@ def rank(classes: Classes) -> None:
 def _(choice, part, i, around):
     old, new = np.int64(choice.of[U(i)]), np.int64(choice.by_surroundings[U(around)])
     tile = i >> 8
-    if choice.parts > 1 or part == ANY:
+    if len(choice.parts) > 0 or part == ANY:
         home = np.int64(choice.home[U(tile)])
         if old == new or (part != home and part != ANY):
             return
@@ -275,10 +282,10 @@ def _find_highest(classes, own, c):
 
 
 @scalar
-def _nth(classes, i, c, rank):
+def _nth(choice, i, c, rank):
     """The place of the site with this rank among those of its class in the tile that begins at a
     place: four words have a bit for each site, and no branch depends on where it is."""
-    address, c = U(classes.of.ctypes.data) + U(i), U(c)
+    address, c = U(choice.of.ctypes.data) + U(i), U(c)
     a, b = equal_bytes(address, c), equal_bytes(address + U(64), c)
     d, e = equal_bytes(address + U(128), c), equal_bytes(address + U(192), c)
     up_to_a = np.int64(bits_set(a))
@@ -288,7 +295,7 @@ def _nth(classes, i, c, rank):
     word, before = (word, before) if rank < up_to_b else (d, up_to_b)
     word, before = (word, before) if rank < up_to_d else (e, up_to_d)
     line = (rank >= up_to_a) + (rank >= up_to_b) + (rank >= up_to_d)
-    return i + 64 * line + np.int64(nth_bit(word, rank - before))
+    return i + 64 * line + np.int64(nth_bit_in_table(choice.bits, word, rank - before))
 
 
 @chance.register(Classes)

@@ -12,6 +12,7 @@ from mesokit.case.case import Case
 from mesokit.kernels.packing import Packing
 from mesokit.loops.threads import Threads
 from mesokit.method.kinetic_monte_carlo.engine import bonds  # noqa: F401  registers exchanges
+from mesokit.method.kinetic_monte_carlo.engine.classes import parts_of
 from mesokit.method.kinetic_monte_carlo.engine.events import (
     CLOCK,
     NEXT,
@@ -153,7 +154,7 @@ class Events:
         """Whether nothing can happen any more."""
         if self.blocks is None:
             return bool(self.course.clock[NEXT] == np.inf)
-        able = self.choice.numbers.reshape(self.choice.parts, -1)[:, :-1]
+        able = self.choice.numbers.reshape(parts_of(self.choice), -1)[:, :-1]
         return not able.any()
 
     def check(self) -> None:

@@ -117,9 +117,20 @@ def coordinates(grid, i):
 @scalar
 def neighbour(grid, i, direction):
     """Where a neighbour of the site at a place is in memory; negative where there is none."""
+    return i + jump(grid, first_jump(grid, i), direction)
+
+
+@scalar
+def first_jump(grid, i):
+    """Where the jumps from the site at a place begin."""
     # indices without a sign: negative ones would be counted from the end
-    first = np.int64(grid.kinds[np.uint64(i >> 8)]) + (i & 255) * grid.neighbours
-    return i + np.int64(grid.jumps[np.uint64(first + direction)])
+    return np.int64(grid.kinds[np.uint64(i >> 8)]) + (i & 255) * grid.neighbours
+
+
+@scalar
+def jump(grid, first, direction):
+    """How far on in memory a neighbour is; the lowest number where there is none."""
+    return np.int64(grid.jumps[np.uint64(first + direction)])
 
 
 class Sites(NamedTuple):

@@ -16,6 +16,7 @@ from mesokit.method.kinetic_monte_carlo.model.protocol import (
     Energies,
     Move,
     Moves,
+    change_of_any,
     change_of_own,
     change_of_weight,
     number_alone,
@@ -40,7 +41,7 @@ class Exchanges(NamedTuple):
     rates: NDArray[np.float64]
 
 
-for _function in (number_alone, weight, change_of_weight, change_of_own):
+for _function in (number_alone, weight, change_of_weight, change_of_any, change_of_own):
     _function.register(Exchanges)(_function.implementation(Table))
 
 

@@ -24,6 +24,7 @@ from mesokit.method.kinetic_monte_carlo.model.protocol import (
     Model,
     Move,
     Moves,
+    change_of_any,
     change_of_own,
     change_of_weight,
     number_alone,
@@ -160,6 +161,11 @@ def _(model, direction, state, old, new):
     return weight_in(of, direction, np.int64(0), after) - weight_in(
         of, direction, np.int64(0), before
     )
+
+
+@change_of_any.register(Heights)
+def _(model, old, new):
+    return np.int64(UNLIKE)
 
 
 @change_of_own.register(Heights)

@@ -142,6 +142,11 @@ def change_of_weight(model, direction, state, old, new):
 
 
 @generic
+def change_of_any(model, old, new):
+    """The same for all directions and states; UNLIKE where it depends on them."""
+
+
+@generic
 def change_of_own(model, old, new):
     """What that number changes by when the site's own state changes, the same whatever is around
     it; UNLIKE: it must be found anew."""

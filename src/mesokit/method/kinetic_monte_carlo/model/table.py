@@ -26,6 +26,7 @@ from mesokit.method.kinetic_monte_carlo.model.protocol import (
     Model,
     Move,
     Moves,
+    change_of_any,
     change_of_own,
     change_of_weight,
     number_alone,
@@ -141,9 +142,11 @@ class Rates(NamedTuple):
     begin: (states + 1,) first process of each state. first: (states,) number of surroundings with
     each state. bits: of a state, or that of a neighbour, in an index. weights: by direction, state
     of the neighbour and of the site. own: by two states of a site, the difference of `first`, or
-    UNLIKE where weights differ too. rates: (m,) of all processes together. shares: (m *
-    processes,), for each neighbour that takes part. fits: (processes,) a bit for each state of a
-    neighbour that may take part, 0 without a neighbour. towards: a bit for each direction.
+    UNLIKE where weights differ too. of_any: by two states of a neighbour, the difference of
+    weights if it is the same for all directions and states of the site, or UNLIKE. rates: (m,) of
+    all processes together. shares: (m * processes,), for each neighbour that takes part. fits:
+    (processes,) a bit for each state of a neighbour that may take part, 0 without a neighbour.
+    towards: a bit for each direction.
     """
 
     begin: NDArray[np.int64]
@@ -151,6 +154,7 @@ class Rates(NamedTuple):
     bits: int
     weights: NDArray[np.int32]
     own: NDArray[np.int64]
+    of_any: NDArray[np.int64]
     rates: NDArray[np.float64]
     shares: NDArray[np.float64]
     fits: NDArray[np.int64]
@@ -205,6 +209,11 @@ def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, e
     for old, new in itertools.product(range(states), repeat=2):
         if (weights[:, old] == weights[:, new]).all():
             change[old, new] = int(first[new]) - int(first[old])
+    of_any = np.full((1 << bits, 1 << bits), UNLIKE)
+    for old, new in itertools.product(range(others), repeat=2):
+        differences = np.unique(weights[:, :, new] - weights[:, :, old])
+        if len(differences) == 1:
+            of_any[old, new] = differences[0]
     begin = np.searchsorted([one.site[0] for one in ordered], range(states + 1))
     partner = [() if one.neighbour is None else one.neighbour[0] for one in ordered]
     every = range(z)
@@ -214,6 +223,7 @@ def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, e
         bits,
         padded.ravel(),
         change.ravel(),
+        of_any.ravel(),
         np.array(rates),
         np.array(shares).ravel(),
         np.array([sum(1 << b for b in some) for some in partner]),
@@ -270,6 +280,11 @@ def _(model, direction, state, other):
 @change_of_weight.register(Table)
 def _(model, direction, state, old, new):
     return weight_in(model.of, direction, state, new) - weight_in(model.of, direction, state, old)
+
+
+@change_of_any.register(Table)
+def _(model, old, new):
+    return model.of.of_any[U((old << model.of.bits) | new)]
 
 
 @change_of_own.register(Table)
