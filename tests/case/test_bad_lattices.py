@@ -195,12 +195,15 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "current of heights": ({'"magnetisation"': '"current"', RANDOM: '{ rule = "uniform" }',
                             'rule = "ising"\nkT = 2.0': 'rule = "family"'},
                            ("observe[#1]", "no particles")),
+    "tracers of flips": ({'"magnetisation"': '"tracer-displacement"'},
+                         ("observe[#1]", "'ising'", "nothing moves 'up'")),
     "tracers of no state": ({'"magnetisation"': '"tracer-displacement"\nstate = "upp"'},
                             ("observe[#1]", "state = 'upp'", "'up'")),
     "tracers of heights": ({ISING: 'rule = "family"', RANDOM: '{ rule = "uniform" }',
                             '"magnetisation"': '"tracer-displacement"'},
                            ("observe[#1]", "'family'", "heights")),
-    "hops to both sides": ({'"magnetisation"': '"tracer-displacement"', "[12, 10]": "[12, 2]"},
+    "hops to both sides": ({'"magnetisation"': '"tracer-displacement"', "[12, 10]": "[12, 2]",
+                            "kT = 2.0": 'kT = 2.0\nmoves = "exchange"'},
                            ("observe[#1]", "box.size = [12, 2]", "at least 3", "along y")),
     "no tracer": ({'"magnetisation"': '"tracer-displacement"\nparticles = 0'},
                   ("observe[#1].particles = 0",)),
@@ -329,6 +332,10 @@ BAD_GAS: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "a plane beyond the box": ({"[lattice.model]":
                                 '[[observe]]\nquantity = "crossings"\npart = 1.5\n[lattice.model]'},
                                ("observe[#1].part = 1.5",)),
+    "tracers that rest": ({"[lattice.model]":
+                           '[[observe]]\nquantity = "tracer-displacement"\n[lattice.model]',
+                           'neighbour = "empty -> A"': 'neighbour = "empty -> empty"'},
+                          ("observe[#1]", "nothing moves 'A'")),
     "energy of a gas": ({"[lattice.model]":
                          '[[observe]]\nquantity = "lattice-energy"\n[lattice.model]'},
                         ("observe[#1]", "no energy")),

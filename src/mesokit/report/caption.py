@@ -20,7 +20,8 @@ SIZE, LEFT = 8, 0.02  # points; of the width, at the left
 _SYMBOLS = {
     "a": "a", "tau": r"\tau", "m": "m", "1/a": "a^{-1}", "1/tau": r"\tau^{-1}", "a^2": "a^2",
     "a/tau": r"a/\tau", "a^2/tau": r"a^2/\tau", "a^2/tau^2": r"a^2/\tau^2",
-    "a^2/time": r"a^2/\tau", "a/tau^2": r"a/\tau^2", "1/a^2": "a^{-2}", "1/a^3": "a^{-3}",
+    "a/time": r"a/\tau", "a^2/time": r"a^2/\tau", "a/tau^2": r"a/\tau^2",
+    "1/a^2": "a^{-2}", "1/a^3": "a^{-3}",
     "m a^2/tau^2": r"m\,a^2/\tau^2", "m a/tau": r"m\,a/\tau", "m a/tau^2": r"m\,a/\tau^2",
     "m/tau^2": r"m/\tau^2", "a^3/tau": r"a^3/\tau", "m/(a tau^2)": r"m/(a\,\tau^2)",
     "a^2/sums": "a^2", "kT": "k_BT", "kT/a": "k_BT/a", "kT/a^2": "k_BT/a^2", "kT/a^3": r"k_BT/a^3",

@@ -13,6 +13,7 @@ from mesokit.case.case import Case
 from mesokit.method.kinetic_monte_carlo.expected import Known
 from mesokit.method.kinetic_monte_carlo.expected_structure import ring_of_particles
 from mesokit.method.kinetic_monte_carlo.lattice.patch import patch_of
+from mesokit.method.kinetic_monte_carlo.model.alone import rates_alone
 from mesokit.method.kinetic_monte_carlo.model.table import TableModel
 
 Array = NDArray[np.floating[Any]]
@@ -24,7 +25,7 @@ ALONE = "approximate: alone"
 
 
 class Walk(NamedTuple):
-    """A particle alone among sites in the first state.
+    """A particle alone among sites in the state behind.
 
     rate: of all its hops. drift: its mean velocity (d,). only: whether nothing else can happen.
     """
@@ -34,20 +35,26 @@ class Walk(NamedTuple):
     only: bool
 
 
+def behind(state: int) -> int:
+    """The state of the sites that particles in a state move among: the first one, unless it is
+    that of the particles."""
+    return 0 if state else 1
+
+
 def walk(case: Case, state: int) -> Walk | None:
     """How a particle in a state moves where it is alone; None where moves cannot be listed."""
     kind, model = case.lattice.lattice, case.lattice.model
     moves = model.list_moves(kind)
     if moves is None:
         return None
-    d, behind, size = kind.dimension, 0 if state else 1, (SIDE,) * kind.dimension
+    d, size = kind.dimension, (SIDE,) * kind.dimension
     places = kind.places(size)
-    rate, drift, only = 0.0, np.zeros(d), len(model.states()) == 2
+    rate, drift, only = 0.0, np.zeros(d), True
     # two sites in the middle, next to each other along the last axis: one of each parity
     first = SIDE // 2 * int(sum(SIDE**k for k in range(d)))
     starts = first, first + 1
     for start in starts:
-        states = [behind] * len(places)
+        states = [behind(state)] * len(places)
         states[start] = state
         patch = patch_of(kind, size, (False,) * d, states)
         for i in range(len(places)):
@@ -55,7 +62,7 @@ def walk(case: Case, state: int) -> Walk | None:
                 after = patch.after(move.changes)
                 if after == patch:
                     continue
-                there = [k for k, s in enumerate(after.states) if s != behind]
+                there = [k for k, s in enumerate(after.states) if s != behind(state)]
                 if len(there) == 1 and after.states[there[0]] == state:
                     rate += move.rate / len(starts)
                     drift += move.rate * (places[there[0]] - places[start]) / len(starts)
@@ -65,15 +72,19 @@ def walk(case: Case, state: int) -> Walk | None:
 
 
 class Tracers:
-    """Theory of particles in a state, of which there were so many when measuring began."""
+    """Theory of particles in a state.
 
-    def __init__(self, case: Case, state: int, number: float) -> None:
+    When measuring began there were so many of them, and so many sites not in the state behind.
+    """
+
+    def __init__(self, case: Case, state: int, number: float, others: float) -> None:
         self.case, self.number = case, number
         self.sites = int(np.prod(case.box.size))
         self.ring = ring_of_particles(case) and state == 1 and number > 1
-        known = not case.lattice.ends and (self.ring or number <= max(1, DILUTE * self.sites))
-        self.walk = walk(case, state) if known else None
-        self.note = "" if self.walk and self.walk.only and number <= 1 else ALONE
+        dilute = others <= max(1, DILUTE * self.sites)
+        found = walk(case, state) if self.ring or (dilute and not case.lattice.ends) else None
+        self.walk = found if found and found.rate else None
+        self.note = "" if self.walk and self.walk.only and others <= 1 else ALONE
 
     @property
     def drifts(self) -> bool:
@@ -97,32 +108,38 @@ class Tracers:
 
     def displacement(self, time: Array) -> tuple[Array | None, str]:
         """Mean square displacement at lags."""
-        if self.walk is None or (self.ring and self.drifts):
+        if self.walk is None:
             return None, ""
+        drift, _ = self.drift()
+        square = (drift @ drift) * time**2
         if not self.ring:
-            square = self.walk.rate * time + (self.walk.drift @ self.walk.drift) * time**2
-            return square, self.note or "a lone walker"
+            return self.walk.rate * time + square, "a lone walker"
+        if self.drifts:
+            return square, "drift alone"
         part, rate = self.number / self.sites, self.walk.rate / 2
         seen = rate * time * part**2 > HOPS * (1 - part) ** 2
         seen &= np.sqrt(math.pi * rate * time) < FINITE * self.sites
         known = np.full(len(time), np.nan)
         known[seen] = theory.single_file_displacement(time[seen], part, rate)
-        return (known if seen.any() else None), "approximate: a long single file (Arratia 1983)"
+        return (known if seen.any() else None), "a long single file (Arratia 1983)"
+
+
+def exchanges(case: Case, state: int) -> bool:
+    """Whether anything moves a particle in a state to a neighbour."""
+    model = case.lattice.model
+    if getattr(model, "moves", "") == "exchange" or not isinstance(model, TableModel):
+        return True
+    return any(
+        one.neighbour is not None
+        and one.site[0] != one.site[1]
+        and state in one.site
+        and one.site[1] in one.neighbour[0]
+        and one.site[0] == one.neighbour[1]
+        for one in model.processes()
+    )
 
 
 def leaving_rate(case: Case, state: int) -> float:
     """Rate at which a site leaves a state; nan where it depends on what is around the site."""
-    model, rate = case.lattice.model, 0.0
-    if not isinstance(model, TableModel):
-        return math.nan
-    for one in model.processes():
-        by_itself = one.site[0] == state != one.site[1]
-        to = one.neighbour
-        beside = to is not None and state in to[0] and to[1] != state
-        if (by_itself and (to is not None or one.counted)) or beside:
-            if not callable(one.rate) and one.rate == 0:
-                continue
-            return math.nan
-        if by_itself:
-            rate += one.rate([0] * (len(model.states()) + 1)) if callable(one.rate) else one.rate
-    return rate or math.nan
+    rates = rates_alone(case.lattice.model)
+    return math.nan if rates is None else float(rates[state].sum()) or math.nan

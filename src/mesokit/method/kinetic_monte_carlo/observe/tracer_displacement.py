@@ -13,7 +13,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, name_of, param, show, tag
 from mesokit.case.describe.digits import two_digits
 from mesokit.errors import CaseError
-from mesokit.method.kinetic_monte_carlo.expected_records import Tracers
+from mesokit.method.kinetic_monte_carlo.expected_records import Tracers, behind, exchanges
 from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservable, RunningLattice
 from mesokit.method.kinetic_monte_carlo.observe.shared.fields import state_number
 from mesokit.observe.mean_square_displacement import Slope, late_slope
@@ -53,8 +53,12 @@ class TracerDisplacement(LatticeObservable):
                 f"model {show(name_of(case.lattice.model))} has heights, whose atoms have no "
                 "numbers; expected a model with named states"
             )
-        if self.state is not None:
-            state_number(case, self.state)
+        state = 1 if self.state is None else state_number(case, self.state)
+        if not exchanges(case, state):
+            raise CaseError(
+                f"model {show(name_of(case.lattice.model))}: nothing moves "
+                f"{show(case.lattice.model.states()[state])} to a neighbour; leave it out"
+            )
         for axis, length in zip(case.box.axes, case.box.size, strict=True):
             if length < SHORTEST and axis not in case.lattice.ends:
                 raise CaseError(
@@ -89,8 +93,9 @@ class TracerAccumulator(BlockAccumulator):
         self.moved: Origins | None = None
         self.there: Origins | None = None
         self.blocks = Blocks(self.axes + 1)  # sums of displacements, and of particles times time
-        # particles followed, these times the particles in the state, and those that are left
-        self.followed = np.zeros(3)
+        # particles followed, and those that are left; the first times the particles in the state,
+        # and times the sites not in the state behind
+        self.followed = np.zeros(4)
 
     def _follow(self, ids: NDArray[np.int64]) -> None:
         self.ids, self.before = ids, np.zeros((len(ids), self.axes))
@@ -99,16 +104,18 @@ class TracerAccumulator(BlockAccumulator):
 
     def observe(self, engine: RunningLattice) -> None:
         if not self.blocks.count:
-            every = np.flatnonzero(engine.began() == self.wanted)
+            began = engine.began()
+            every = np.flatnonzero(began == self.wanted)
             ids = every[spread_ids(self.observable.particles, len(every))] if len(every) else every
-            self.followed = np.array([len(ids), len(ids) * len(every), len(ids)], float)
+            others = np.count_nonzero(began != behind(self.wanted))
+            self.followed = len(ids) * np.array([1.0, 1.0, len(every), others])
             if len(ids):
                 self._follow(ids)
                 self._add(self.before, np.ones(len(ids), bool))
         place, kept = engine.tracers(self.ids)
         steps = (place - self.before)[kept].sum(axis=0)
         self.blocks.add([*steps, kept.sum() * self.interval])
-        self.before, self.followed[2] = place, kept.sum()
+        self.before, self.followed[1] = place, kept.sum()
         if len(self.ids):
             self._add(place, kept)
 
@@ -141,7 +148,9 @@ class TracerAccumulator(BlockAccumulator):
             return self.report({"time": nothing}, (nothing, nothing), extra=self._components())
         time = self.moved.sampled() * self.interval
         square, seen = _mean_of_those_there(self.moved.estimate(), self.there.estimate())
-        time, known = time[seen], Tracers(self.case, self.wanted, self.number)
+        # numbers when measuring began, the mean over runs by those followed
+        numbers = self.followed[2:] / self.followed[0]
+        time, known = time[seen], Tracers(self.case, self.wanted, *numbers)
         expected, note = known.displacement(time)
         sums, _ = self.blocks.sums()
         drift = of_ratio(sums[:, :-1], np.repeat(sums[:, -1:], self.axes, axis=1))
@@ -164,13 +173,8 @@ class TracerAccumulator(BlockAccumulator):
     def _components(self) -> dict[str, str]:
         return {"components": "xyz"[: self.axes]}
 
-    @property
-    def number(self) -> float:
-        """Particles in the state when measuring began, the mean over runs by those followed."""
-        return float(self.followed[1] / self.followed[0])
-
     def _left(self) -> str:
-        gone = 1 - self.followed[2] / self.followed[0]
+        gone = 1 - self.followed[1] / self.followed[0]
         return f"{two_digits(100 * gone)} % of the particles have left" if gone else ""
 
     def _diffusion(self, slope: Slope | None, known: Tracers, moving: bool) -> Iterator[Comparison]:
@@ -178,7 +182,7 @@ class TracerAccumulator(BlockAccumulator):
         expected, note = known.diffusion()
         if known.ring or moving:
             why = "particles drift" if moving else "particles in a single file do not diffuse"
-            yield Comparison(what, math.nan, math.nan, math.nan, unit, f"undetermined: {why}")
+            yield Comparison(what, math.nan, math.nan, math.nan, unit, why)
         elif slope is not None:
             scale = 1 / (2 * self.axes)
             bends = "" if slope.straight else "approximate: no straight line yet, a larger max_lag"
@@ -195,10 +199,10 @@ class TracerAccumulator(BlockAccumulator):
     def _last(
         self, square: Estimate, expected: Array | None, known: Tracers, note: str
     ) -> Iterator[Comparison]:
-        if known.ring and expected is not None and len(square.value):
+        if known.ring and not known.drifts and expected is not None:
             what = "mean square displacement at the longest lag"
-            value, error = float(square.value[-1]), float(square.error[-1])
-            yield Comparison(what, value, error, float(expected[-1]), "a^2", note)
+            ends = square.value[-1], square.error[-1], expected[-1]
+            yield Comparison(what, *ends, "a^2", f"approximate: {note}")
 
     def _drift(self, drift: Estimate, known: Tracers) -> Iterator[Comparison]:
         expected, note = known.drift()
