@@ -136,7 +136,7 @@ def equilibrium(page: Page) -> None:
     page.text(
         "Ising spins, Metropolis, by dwell times: 4 x 4 at the critical temperature beside the sum "
         "over all states; 128^2 beside Onsager and Yang; three-state Potts at its critical "
-        "temperature."
+        "temperature, beside an infinite lattice."
     )
     rows = []
     energy, spins = LatticeEnergy(every=1), Magnetisation(every=1)
@@ -161,12 +161,12 @@ def equilibrium(page: Page) -> None:
             rows.append(Comparison(f"128^2, kT = {kT}: size", size.measured, size.error, known))
     critical, known = theory.potts_critical_energy(1.0, 3)
     simulation = lattice(
-        (128, 128), Potts(q=3, kT=critical), few(8000), observe=[energy], warmup=1000
+        (32, 32), Potts(q=3, kT=critical), few(60_000), observe=[energy], warmup=5000
     )
     simulation.run()
     one = simulation.results["lattice-energy"].comparisons[0]
     rows.append(
-        Comparison("Potts, q = 3, 128^2 at T_c: energy", one.measured, one.error, known, "",
+        Comparison("Potts, q = 3, 32^2 at T_c: energy", one.measured, one.error, known, "",
                    "approximate: of an infinite lattice")
     )  # fmt: skip
     page.table(rows)
