@@ -2,8 +2,8 @@
 
 python -m benchmarks [--rounds 5] [--seconds 3] [--only PART,PART]
 
-Parts: peers, ranks, cost, solids, bonded, solutes, event-driven, soft, flocks, observe, memory,
-startup.
+Parts: peers, ranks, cost, solids, bonded, solutes, event-driven, soft, flocks,
+kinetic-monte-carlo, observe, memory, startup.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from benchmarks import (
     costs,
     event_driven,
     flocks,
+    kinetic_monte_carlo,
     peers,
     ranks,
     soft_spheres,
@@ -35,6 +36,7 @@ PARTS = {
     "event-driven": event_driven.table,
     "soft": soft_spheres.table,
     "flocks": flocks.table,
+    "kinetic-monte-carlo": kinetic_monte_carlo.table,
     "observe": costs.observables,
     "memory": costs.memory,
     "startup": startup.table,

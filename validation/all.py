@@ -14,7 +14,7 @@ NAMES = (
     "viscosity_routes", "viscosity_rules", "lees_edwards_profile", "wall_slip", "thermostat",
     "conservation", "round_flows", "drag", "wakes", "solids_at_rest", "solids_inside",
     "bonded_modes", "viscoelastic", "polymer_diffusion", "colloids", "pooled_runs",
-    "random_numbers", "demix", "flocks", "hard_spheres", "soft_spheres",
+    "random_numbers", "demix", "flocks", "hard_spheres", "soft_spheres", "kinetic_monte_carlo",
     "liquid", "freezing", "error_bars",
 )  # fmt: skip
 
