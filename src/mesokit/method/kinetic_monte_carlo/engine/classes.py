@@ -42,12 +42,12 @@ class Classes(NamedTuple):
     A part of the lattice is what one thread works on at a time: all of it, or a sector.
 
     of: (n,) class of each site or bond. by_surroundings: (m,) class of sites with these. chances:
-    (m,) rates over that of the class. rates: (classes,). parts: how many, nothing for one. home: (tiles,) part of
-    each. numbers: (parts, classes) of each class. counts: (tiles, classes). lists: (classes, tiles)
-    tiles that have any of a class, those of each part together. ranks: (tiles, classes) where a
-    tile is in its list. lengths, first: (parts, classes) tiles in a list, and where it begins.
-    highest: (parts, classes) no tile has more. refused: (parts, classes) tiles since that was found
-    that were drawn in vain. bits: see `nth_bit_in_table`.
+    (m,) rates over that of the class. rates: (classes,). parts: how many, nothing for one. home:
+    (tiles,) part of each. numbers: (parts, classes) of each class. counts: (tiles, classes). lists:
+    (classes, tiles) tiles that have any of a class, those of each part together. ranks: (tiles,
+    classes) where a tile is in its list. lengths, first: (parts, classes) tiles in a list, and
+    where it begins. highest: (parts, classes) no tile has more. refused: (parts, classes) tiles
+    since that was found that were drawn in vain. bits: see `nth_bit_in_table`.
     """
 
     of: NDArray[np.uint8]
