@@ -207,14 +207,13 @@ def _class(choice, part, total, u):
 
 
 @scalar
-def _try(choice, own, c, length, highest, stream):
+def _try(choice, own, c, length, highest, word):
     """A tile of those with any of a class, and the rank of a site in it, which there may not be:
     so each is taken as often as it has sites of the class."""
     # the high part of a product with a random word is random, and its low part is as random again
-    x, stream = next_word(stream)
-    k = np.int64(high_product(x, length))
+    k = np.int64(high_product(word, length))
     tile = np.int64(choice.lists[U(choice.first[U(own + c)] + k)])
-    return tile, np.int64(high_product(x * length, highest)), stream
+    return tile, np.int64(high_product(word * length, highest))
 
 
 @choose.register(Classes)
@@ -222,12 +221,13 @@ def _(choice, sites, part, total, u, word):
     own, c, stream = part * len(choice.rates), _class(choice, part, total, u), word
     length, highest = U(choice.lengths[U(own + c)]), U(choice.highest[U(own + c)])
     while True:
-        tile, rank, stream = _try(choice, own, c, length, highest, stream)
+        tile, rank = _try(choice, own, c, length, highest, word)
         if rank < np.int64(choice.counts[U(tile * len(choice.rates) + c)]):
             break
         choice.refused[U(own + c)] += 1
         if choice.refused[U(own + c)] > 4 * np.int64(length) + 64:
             highest = U(_find_highest(choice, own, c))
+        word, stream = next_word(stream)
     return _nth(choice, tile << 8, c, rank), unit_of(next_word(stream)[0])
 
 
@@ -235,11 +235,13 @@ def _(choice, sites, part, total, u, word):
 def _(choice, sites, total, numbers):
     for k in range(len(numbers.hints)):
         c, stream = _class(choice, 0, total, numbers.units[U(k)]), numbers.streams[U(k)]
+        word = stream
         length, highest = U(choice.lengths[U(c)]), U(choice.highest[U(c)])
-        tile, rank, stream = _try(choice, 0, c, length, highest, stream)
+        tile, rank = _try(choice, 0, c, length, highest, word)
         tries = 0
         while rank >= np.int64(choice.counts[U(tile * len(choice.rates) + c)]) and tries < 8:
-            tile, rank, stream = _try(choice, 0, c, length, highest, stream)
+            word, stream = next_word(stream)
+            tile, rank = _try(choice, 0, c, length, highest, word)
             tries += 1
         numbers.hints[U(k)] = (((tile << 8) | c) << 8) | rank
         if k < EARLY:
