@@ -102,7 +102,7 @@ def test_what_is_kept_of_sites_is_as_if_it_were_made_anew(name, kind):
     engine = lattice_engine(
         size, MODELS[name], kind=kind, ends=["x"], timestep=0.5, select="classes"
     )
-    engine.advance(12)
+    engine.advance(20)
     assert engine.happened().sum() > 500
     found = {name: array.copy() for name, array in kept(engine).items()}
     engine.restore(engine.state())
