@@ -27,6 +27,7 @@ from mesokit.method.kinetic_monte_carlo.observe.lattice_energy import LatticeEne
 from mesokit.method.kinetic_monte_carlo.observe.magnetisation import Magnetisation
 from mesokit.method.kinetic_monte_carlo.section import Lattice, Sublattices
 from mesokit.method.kinetic_monte_carlo.start import AlternatingStart, SlabStart, UniformStart
+from mesokit.report.style import sparse_logarithm
 
 CRITICAL = 2 / math.log(1 + 2**0.5)  # kT/J of Ising's square lattice
 BLOCKS, PARTS = 20, 16  # of a run; of a surface
@@ -219,10 +220,12 @@ def quenches(page: Page, axis: Any) -> None:
             engine.advance(round(time) - now)
             now = round(time)
             lengths[k].append(2 / (energy(engine) - rest))
-    rows = [
-        Comparison(f"exchange, length at {time:g}", *mean_and_error(some), known)
-        for (time, known), some in zip(EXCHANGE.items(), lengths, strict=True) if some
-    ]  # fmt: skip
+    rows = []
+    for (time, known), some in zip(EXCHANGE.items(), lengths, strict=True):
+        if some:
+            mean, error = mean_and_error(some)
+            both_errors = math.hypot(error, 0.01 * known)
+            rows.append(Comparison(f"exchange, length at {time:g}", mean, both_errors, known))
     page.table(rows)
     within(page, "domains by exchange", rows, 3.0)
 
@@ -248,6 +251,7 @@ def quenches(page: Page, axis: Any) -> None:
     page.table(rows)
     judge(page, "sublattices beside exact events", rows, 3.0)
     axis.set(xlabel="time", ylabel="length of domains", xscale="log", yscale="log")
+    sparse_logarithm(axis.yaxis, *axis.get_ylim())
 
 
 def _domains(
@@ -390,6 +394,7 @@ def surfaces(page: Page, axis: Any) -> None:
             page.check(f"speed of restricted growth {speed:.4f} (0.42, within 0.003)",
                        abs(speed - 0.42) < 3e-3)  # fmt: skip
     axis.set(xlabel="time", ylabel="width", xscale="log", yscale="log")
+    sparse_logarithm(axis.yaxis, *axis.get_ylim())
     axis.legend()
     page.table(rows)
     worst = max(abs(c.measured - c.expected) for c in rows)

@@ -143,11 +143,12 @@ def test_barriers_lead_to_the_occupations_of_boltzmann():
 
 
 def test_occupations_relax_as_the_master_equation_has_it():
-    observe = [Coverage(every=1)]
+    observe = [Coverage(every=1), EventRates(every=1)]
     found = results_of(barriers(), observe, steps=30, timestep=0.5, start=UniformStart())
     coverage = found["coverage"]
     assert coverage.value[0].tolist() == coverage.expected[0].tolist() == [1, 0, 0]
     share = coverage.expected[1:]
     error = np.sqrt(share * (1 - share) / 10_000)
     assert abs((coverage.value[1:] - share) / error).max() < 4.5
-    assert all(one.note.startswith("not steady") for one in coverage.comparisons)
+    compared = [one for result in found.values() for one in result.comparisons]
+    assert len(compared) == 7 and all(one.note.startswith("not steady") for one in compared)
