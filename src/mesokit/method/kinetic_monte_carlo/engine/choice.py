@@ -54,3 +54,24 @@ def planes_of(choice):
 @planes_of.otherwise
 def _(choice):
     return 1
+
+
+# of exact choices that draw what happens at once, and bring no memory before
+@chance.otherwise
+def _(choice, around):
+    return 1.0
+
+
+@keeps.otherwise
+def _(choice):
+    return True
+
+
+@foresee.otherwise
+def _(choice, sites, total, numbers):
+    pass
+
+
+@fetch.otherwise
+def _(choice, sites, numbers, k):
+    pass

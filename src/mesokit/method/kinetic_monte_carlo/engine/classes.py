@@ -21,7 +21,6 @@ from mesokit.method.kinetic_monte_carlo.engine.choice import (
     choose,
     fetch,
     foresee,
-    keeps,
     put,
     total_rate,
 )
@@ -303,8 +302,3 @@ def _nth(choice, i, c, rank):
 @chance.register(Classes)
 def _(choice, around):
     return choice.chances[U(around)]
-
-
-@keeps.register(Classes)
-def _(choice):
-    return True

@@ -7,15 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.kinetic_monte_carlo.engine.choice import (
-    chance,
-    choose,
-    fetch,
-    foresee,
-    keeps,
-    put,
-    total_rate,
-)
+from mesokit.method.kinetic_monte_carlo.engine.choice import choose, put, total_rate
 
 
 class Linear(NamedTuple):
@@ -48,23 +40,3 @@ def _(choice, sites, part, total, u, word):
                 break
             left -= choice.of[i]
     return last, min(part_of, 1.0 - 2.0**-53)
-
-
-@chance.register(Linear)
-def _(choice, around):
-    return 1.0
-
-
-@keeps.register(Linear)
-def _(choice):
-    return True
-
-
-@foresee.register(Linear)
-def _(choice, sites, total, numbers):
-    pass
-
-
-@fetch.register(Linear)
-def _(choice, sites, numbers, k):
-    pass

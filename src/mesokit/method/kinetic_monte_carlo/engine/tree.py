@@ -7,15 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.kinetic_monte_carlo.engine.choice import (
-    chance,
-    choose,
-    fetch,
-    foresee,
-    keeps,
-    put,
-    total_rate,
-)
+from mesokit.method.kinetic_monte_carlo.engine.choice import choose, put, total_rate
 
 U = np.uint64
 
@@ -65,23 +57,3 @@ def _(choice, sites, part, total, u, word):
         rate = high if right else low
         k += 1 if right else 0
     return k - choice.leaves, min(left / rate, 1.0 - 2.0**-53)
-
-
-@chance.register(Tree)
-def _(choice, around):
-    return 1.0
-
-
-@keeps.register(Tree)
-def _(choice):
-    return True
-
-
-@foresee.register(Tree)
-def _(choice, sites, total, numbers):
-    pass
-
-
-@fetch.register(Tree)
-def _(choice, sites, numbers, k):
-    pass

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Callable, Mapping
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -13,11 +12,9 @@ from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.method.kinetic_monte_carlo.lattice.grid import by_number, grid_of, neighbour
-from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
-from mesokit.method.kinetic_monte_carlo.model.exchange import NAME as EXCHANGE
-from mesokit.method.kinetic_monte_carlo.model.exchange import exchange_moves, exchanges
-from mesokit.method.kinetic_monte_carlo.model.protocol import Energies, Known, Moves
-from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
+from mesokit.method.kinetic_monte_carlo.model.protocol import Energies, Known
+from mesokit.method.kinetic_monte_carlo.model.spins import SpinModel
+from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
 from mesokit.method.kinetic_monte_carlo.start import sites_of
 
 DOWN, UP = 0, 1
@@ -25,7 +22,7 @@ FEW = 16  # spins, of which all states are counted
 
 
 @component
-class Ising(TableModel):
+class Ising(SpinModel):
     """Spins s = -1 or 1 with the energy -J sum s s' - h sum s, over pairs of neighbours and sites.
 
     What happens has a rate that follows from the change of energy dE: with "metropolis"
@@ -48,25 +45,6 @@ class Ising(TableModel):
     def states(self) -> tuple[str, ...]:
         return "down", "up"
 
-    def kernel(self, kind: Kind, ends: bool) -> Any:
-        """The table of what may happen."""
-        if self.moves == "exchange":
-            return exchanges(self.energies(), self._accepted, kind, ends)
-        return super().kernel(kind, ends)
-
-    def list_moves(self, kind: Kind) -> Moves | None:
-        """What may happen, in plain Python."""
-        if self.moves == "exchange":
-            return exchange_moves(self.energies(), self._accepted)
-        return super().list_moves(kind)
-
-    def _accepted(self, change: float) -> float:
-        return self.attempt_rate * acceptance(self.dynamics, change, self.kT)
-
-    def events(self) -> list[str]:
-        """Names of what may happen."""
-        return [EXCHANGE] if self.moves == "exchange" else super().events()
-
     def processes(self) -> list[Process]:
         """Flips up and down."""
         return [
@@ -80,7 +58,7 @@ class Ising(TableModel):
         def rate(counts: Counts) -> float:
             around = counts[UP] - counts[DOWN]
             change = 2.0 * spin * (self.coupling * around + self.field)
-            return self._accepted(change)
+            return self.accepted(change)
 
         return rate
 
@@ -119,19 +97,6 @@ class Ising(TableModel):
             found["size"] = ordered, f"approximate: {note}"
             found["square"] = ordered**2, f"approximate: {note}"
         return found
-
-
-def acceptance(dynamics: str, change: float, kT: float) -> float:
-    """Rate of a change of energy over the largest one, in detailed balance.
-
-    >>> acceptance("metropolis", -1.0, 0.0), acceptance("glauber", 0.0, 1.0)
-    (1.0, 0.5)
-    """
-    if dynamics == "metropolis":
-        return 1.0 if change <= 0 else math.exp(-change / kT) if kT > 0 else 0.0
-    if kT > 0:
-        return 1.0 / (1.0 + math.exp(min(change / kT, 700.0)))
-    return 0.5 if change == 0 else float(change < 0)
 
 
 @functools.lru_cache(maxsize=8)

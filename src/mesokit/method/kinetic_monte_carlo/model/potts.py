@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
-from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
-from mesokit.method.kinetic_monte_carlo.model.exchange import NAME as EXCHANGE
-from mesokit.method.kinetic_monte_carlo.model.exchange import exchange_moves, exchanges
-from mesokit.method.kinetic_monte_carlo.model.ising import acceptance
-from mesokit.method.kinetic_monte_carlo.model.protocol import Energies, Known, Moves
-from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
+from mesokit.method.kinetic_monte_carlo.model.protocol import Energies, Known
+from mesokit.method.kinetic_monte_carlo.model.spins import SpinModel, acceptance
+from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process
 
 CRITICAL = 1e-4  # relative distance from the critical temperature that is none
 
 
 @component
-class Potts(TableModel):
+class Potts(SpinModel):
     """Sites in one of q states, with the energy -J for each pair of neighbours in the same.
 
     A site turns to each of the others with the rate attempt_rate/(q - 1) times that of Metropolis
@@ -41,25 +38,6 @@ class Potts(TableModel):
 
     def states(self) -> tuple[str, ...]:
         return tuple(f"state {k}" for k in range(self.q))
-
-    def kernel(self, kind: Kind, ends: bool) -> Any:
-        """The table of what may happen."""
-        if self.moves == "exchange":
-            return exchanges(self.energies(), self._accepted, kind, ends)
-        return super().kernel(kind, ends)
-
-    def list_moves(self, kind: Kind) -> Moves | None:
-        """What may happen, in plain Python."""
-        if self.moves == "exchange":
-            return exchange_moves(self.energies(), self._accepted)
-        return super().list_moves(kind)
-
-    def _accepted(self, change: float) -> float:
-        return self.attempt_rate * acceptance(self.dynamics, change, self.kT)
-
-    def events(self) -> list[str]:
-        """Names of what may happen."""
-        return [EXCHANGE] if self.moves == "exchange" else super().events()
 
     def processes(self) -> list[Process]:
         """Turns from each state to each other."""
