@@ -18,7 +18,7 @@ from mesokit.method.kinetic_monte_carlo.observe.protocol import LatticeObservabl
 from mesokit.method.kinetic_monte_carlo.observe.shared.fields import state_number
 from mesokit.observe.mean_square_displacement import Slope, late_slope
 from mesokit.observe.shared.fitted import fitted_number
-from mesokit.observe.shared.origins import Origins
+from mesokit.observe.shared.origins import GROUPS, Origins
 from mesokit.seam.estimate import Estimate, of_ratio
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result, joined
@@ -106,7 +106,7 @@ class TracerAccumulator(BlockAccumulator):
         if not self.blocks.count:
             began = engine.began()
             every = np.flatnonzero(began == self.wanted)
-            ids = every[spread_ids(self.observable.particles, len(every))] if len(every) else every
+            ids = _by_region(every[spread_ids(self.observable.particles, len(every))])
             others = np.count_nonzero(began != behind(self.wanted))
             self.followed = len(ids) * np.array([1.0, 1.0, len(every), others])
             if len(ids):
@@ -215,6 +215,15 @@ class TracerAccumulator(BlockAccumulator):
                 "a/tau",
                 joined(note, self._left()),
             )
+
+
+def _by_region(ids: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Particles in an order in which each group of `Origins` is of one region: those that are near
+    hinder one another, and are not independent."""
+    groups = min(GROUPS, len(ids))
+    return (
+        ids[: len(ids) // max(groups, 1) * groups].reshape(groups, -1).T.ravel() if groups else ids
+    )
 
 
 def _square_if_there(old: Array, new: Array) -> Array:

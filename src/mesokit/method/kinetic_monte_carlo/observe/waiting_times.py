@@ -179,7 +179,7 @@ class Exponential:
         >>> round(Exponential(1.0, 1e6, 1.0, 1e6, 1.0).spread, 4)
         2.0
         >>> round(Exponential(1.0, 10.0, 1.0, 10.0, 1.0).spread, 4)
-        1.9762
+        1.9754
         """
         whole, b = self.rate * self.passed, self.later / (self.rate * self.passed)
         # integrals of x^n exp(-x) up to the end: incomplete gamma functions
