@@ -60,20 +60,20 @@ def main():
     for hops in HOPS:
         layers = [grown(hops, seed) for seed in range(SEEDS)]
         found.append([islands(sites) for sites in layers])
-        print(f"D/F = {hops:.0e}: {np.mean(found[-1]):.5f} islands per site")
+        print(f"K/F = {hops:.0e}: {np.mean(found[-1]):.5f} islands per site")
         if hops in (1e4, 1e6):
             ax = panels[0 if hops == 1e4 else 1]
             ax.imshow(layers[0][:PART, :PART].T, cmap="cividis_r", origin="lower")
-            ax.set(title=f"$D/F = 10^{{{math.log10(hops):.0f}}}$", xlabel="$x$  [$a$]")
+            ax.set(title=f"$K/F = 10^{{{math.log10(hops):.0f}}}$", xlabel="$x$  [$a$]")
     panels[0].set_ylabel("$y$  [$a$]")
     mean = np.mean(found, axis=1)
     slope = -math.log(mean[-1] / mean[-2]) / math.log(HOPS[-1] / HOPS[-2])
     print(f"exponent of the last two {slope:.2f}, rate equations 1/3")
     ax = panels[2]
     ax.loglog(HOPS, mean[-1] * (np.array(HOPS) / HOPS[-1]) ** (-1 / 3), color="0.7", lw=3,
-              label="$(D/F)^{-1/3}$")  # fmt: skip
+              label="$(K/F)^{-1/3}$")  # fmt: skip
     ax.loglog(HOPS, mean, "o", color=COLOURS[0], mfc="white", label="measured")
-    ax.set(title="density", xlabel="$D/F$", ylabel="islands per site")
+    ax.set(title="density", xlabel="hops over flux $K/F$", ylabel="islands per site")
     ax.set_yticks([4e-3, 1e-2, 2e-2, 4e-2], ["0.004", "0.01", "0.02", "0.04"])
     ax.minorticks_off()
     ax.legend()

@@ -230,7 +230,7 @@ class TestNewStudies:
     def test_lists_names_only_where_none_is_near(self, given, wanted, capsys: Captured) -> None:
         told = refusal(capsys, "new", given)
         assert wanted in told and "give one of them" not in told
-        assert "give one of them, or --template: brownian," in refusal(capsys, "new", "zzz")
+        assert "give one of them, or --template: aggregation," in refusal(capsys, "new", "zzz")
 
 
 @pytest.mark.parametrize(("given", "wanted"), [

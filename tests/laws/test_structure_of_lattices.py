@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mesokit import theory
+from mesokit import Simulation, theory
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
 from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion
 from mesokit.method.kinetic_monte_carlo.model.family import Family
@@ -65,12 +65,25 @@ def test_pairs_are_those_within_each_shell(name, ends):
     distance = np.linalg.norm(folded, axis=-1)
     use = distance <= 0.5 * length.min() + 1e-9
     shell, both = np.rint(distance[use]).astype(int), np.outer(field, field)[use]
+    shell[(shell == 1) & (distance[use] > 1 + 1e-6)] = 2  # only neighbours are in the first
     number = np.bincount(shell)
     np.testing.assert_array_equal(pairs.pairs, number)
     np.testing.assert_allclose(
         pairs.mean_products(field), np.bincount(shell, both) / number, atol=1e-12
     )
     np.testing.assert_allclose(pairs.distance, np.bincount(shell, distance[use]) / number)
+
+
+@pytest.mark.parametrize("name", ["square", "bcc", "triangular", "honeycomb"])
+def test_the_nearest_sites_are_those_of_the_energy(name):
+    case = lattice_case((12, 8, 6)[: KINDS[name].dimension], Ising(), name)
+    engine = Simulation(case).engine
+    made = SiteCorrelation().accumulator(case)
+    made.observe(engine)
+    nearest, pairs = made.result().comparisons[0], engine.pairs()
+    alike = (pairs[0, 0] + pairs[1, 1] - pairs[0, 1] - pairs[1, 0]) / pairs.sum()
+    square = (2 * engine.sites().mean() - 1) ** 2
+    assert nearest.measured == pytest.approx((alike - square) / (1 - square), abs=1e-12)
 
 
 def test_a_ring_of_spins_has_the_correlation_of_its_transfer_matrix():
@@ -80,7 +93,7 @@ def test_a_ring_of_spins_has_the_correlation_of_its_transfer_matrix():
     )
     found = results_of(case)
     g, s = found["site-correlation"], found["site-structure-factor"]
-    assert near(g.comparisons) == {"correlation of the nearest shell", "distance at which g is 1/e"}
+    assert near(g.comparisons) == {"correlation of the nearest sites", "distance at which g is 1/e"}
     assert near(s.comparisons) == {"structure factor of the longest waves", "mean structure factor"}
     assert abs(deviations(g)).max() < 4.5 and abs(deviations(s)).max() < 4.5
     assert g.comparisons[1].expected == pytest.approx(-1 / np.log(np.tanh(1.0)), rel=0.02)

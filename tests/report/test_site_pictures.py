@@ -142,13 +142,22 @@ def test_profiles_are_heights_at_several_times():
         (ax,) = picture(case, {}, frames, time=time).axes
         lines = ax.get_lines()
         shown[time] = [int(line.get_label().strip("$").removeprefix("t = ")) for line in lines]
+        assert "less its mean" in ax.get_ylabel()  # they are apart by many widths
         for row, line in zip(shown[time], lines, strict=True):
-            np.testing.assert_array_equal(line.get_ydata()[:-1], heights[row])
+            np.testing.assert_allclose(line.get_ydata()[:-1], heights[row] - heights[row].mean())
             assert line.get_drawstyle() == "steps-post" and line.get_xdata()[-1] == 12
     assert shown["linear"] == [0, 20, 40, 60, 80, 100]
     assert shown["log"][0] == 0 and shown["log"][-1] == 100
     ratios = np.diff(np.log(shown["log"][1:]))
     assert ratios.min() > 0.5 * ratios.max()  # about as far apart, with whole times
+
+
+def test_profiles_of_a_surface_that_has_hardly_grown_are_its_heights():
+    heights = np.arange(6)[:, None] + 5 * spins(6, 12)
+    (ax,) = picture(lattice_case((12,), Family(), "chain"), {}, Frames(heights)).axes
+    assert "less" not in ax.get_ylabel()
+    for row, line in zip(range(6), ax.get_lines(), strict=True):
+        np.testing.assert_array_equal(line.get_ydata()[:-1], heights[row])
 
 
 def test_what_is_drawn_last_is_what_the_eye_meets_first():

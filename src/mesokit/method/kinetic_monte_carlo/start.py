@@ -212,8 +212,8 @@ class AlternatingStart(LatticeStart):
     def states(self, case: Case) -> States:
         if case.lattice.kind not in ("chain", "square", "honeycomb", "cubic"):
             raise CaseError(
-                "lattice.start.rule = 'alternating': on this lattice neighbours of a site are "
-                "neighbours of one another; expected another start"
+                "lattice.start.rule = 'alternating': expected a chain, a square, a "
+                "honeycomb or a cubic lattice"
             )
         for axis, length in zip(case.box.axes, case.box.size, strict=True):
             if length % 2 and axis not in case.lattice.ends:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.case import Case
@@ -35,6 +36,8 @@ WORDS = {
     "attempts": "by attempts",
     "linear": "by a walk over all sites",
 }
+SECONDS_OF_CYCLE = 3e-6  # of a block in sublattices without an event
+LONG = 30 * 86400.0  # a run that hardly anyone means
 LONGEST = 1e10  # seconds: longer ones are not told apart
 EQUILIBRIUM = {  # what theory expects in it alone
     "height-differences",
@@ -64,10 +67,11 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     select = selected(given.select, table.rates)
     each = SECONDS[select] * (sites if select == "linear" else 1)
     at_once = 1 if given.sublattices is None else min(threads or 1, sites // blocks_of(case))
+    cycles = cycles_of(case, table.rates) * SECONDS_OF_CYCLE * sites / blocks_of(case) / at_once
     shortest, longest = (
-        duration_text(min(events * each / at_once, LONGEST)) for events in (usual, most)
+        duration_text(min(events * each / at_once + cycles, LONGEST)) for events in (usual, most)
     )
-    seconds = (usual if total else most) * each / at_once
+    seconds = (usual if total else most) * each / at_once + cycles
     rates = {"classes": 10 * len(distinct) / TILE, "tree": 32.0, "linear": 8.0}.get(select, 0.0)
     memory = int(sites * (BYTES + 8 + rates)) + 150_000_000
     stored = stored_bytes(case.trajectory, case.groups, case.box.dimension, case.run.steps)
@@ -87,19 +91,36 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     ]  # fmt: skip
     if given.sublattices is not None:
         block = given.sublattices.of(len(case.box.size))
-        per_step = max(1, math.ceil(given.timestep / given.cycle(table.rates)))
+        per_step = number(cycles_of(case, table.rates) / max(steps, 1))
         rows.append(
-            ("sublattices", f"blocks of {block} sites", f"{per_step} cycles in a step; approximate")
+            (
+                "sublattices",
+                f"blocks of {block} sites",
+                f"cycles in a step: {per_step}; approximate",
+            )
         )
     if stored:
         rows.append(("trajectory", size_text(stored), "estimate"))
     warnings = [*run_warnings(case, memory, stored), *_warnings(case, float(distinct.max()))]
+    if seconds > LONG:
+        warnings.append(
+            f"lattice.timestep: the run takes {duration_text(min(seconds, LONGEST))} or more; "
+            "a shorter time, or slower rates, cost less"
+        )
     return Summary(tuple(rows), tuple(warnings), seconds, {"sites": sites}, memory)
 
 
 def threads_text(number: int) -> str:
     """On how many threads a time is estimated."""
     return f"estimate: {number} thread{'s' if number > 1 else ''}"
+
+
+def cycles_of(case: Case, rates: NDArray[np.float64]) -> float:
+    """Cycles of sublattices in the run, 0 without them."""
+    given, steps = case.lattice, case.run.warmup + case.run.steps
+    if given.sublattices is None:
+        return 0.0
+    return steps * max(1.0, math.ceil(given.timestep / given.cycle(rates)))
 
 
 def blocks_of(case: Case) -> int:
@@ -139,6 +160,12 @@ def _warnings(case: Case, fastest: float) -> Iterator[str]:
         yield (
             f"lattice.timestep: at most {per_slice:.2g} events in a step on average; "
             "a longer timestep costs less"
+        )
+    given = case.lattice
+    if given.sublattices is not None and (given.sublattices.cycle or 0.0) * fastest > 1:
+        yield (
+            f"lattice.sublattices.cycle = {number(given.sublattices.cycle or 0.0)}: more than the "
+            f"mean wait of the fastest site, {number(1 / fastest)}; errors grow with the cycle"
         )
     length, _ = known_mean(case, "correlation length")
     if length == math.inf:

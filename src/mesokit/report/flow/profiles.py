@@ -3,12 +3,14 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.report.flow.site_frames import PER_DECADE, SiteFrames, evenly, geometric
 from mesokit.report.flow.site_picture import SitePicture
 from mesokit.report.style import labelled
 
 LINES = 6  # times in one picture
+APART = 8.0  # widths of a surface
 PALE, DARK = 0.3, 1.0  # of the colour map, from the first to the last time
 
 
@@ -23,11 +25,16 @@ class Profiles(SitePicture):
         lattice = frames.lattice
         self.edges = np.linspace(0, float(lattice.edges[0]), lattice.number + 1)
         some = [frames.at(int(k)) for k in evenly(len(frames), LINES * LINES)]
+        means = [float(heights.mean()) for heights in some]
+        # of surfaces that have grown far apart nothing but their means would be seen
+        self.less = max(means) - min(means) > APART * max(float(h.std()) for h in some)
+        some = [self._shown(heights) for heights in some]
         low, high = min(h.min() for h in some), max(h.max() for h in some)
         room = 0.05 * max(high - low, 1)
         self.ax.set(xlim=(0, self.edges[-1]), ylim=(low - room, high + room))
         self.ax.set_xlabel(labelled("x", "a"))
-        self.ax.set_ylabel(labelled("height $h$", "a"))
+        what = "height less its mean $h - \\langle h \\rangle$" if self.less else "height $h$"
+        self.ax.set_ylabel(labelled(what, "a"))
 
     def still(self) -> None:
         """Draw lines of several times, which a legend names from the last, the highest, down."""
@@ -51,7 +58,10 @@ class Profiles(SitePicture):
         self._line(index, color="black")
         self.ax.set_title(self.frames.title(index))
 
+    def _shown(self, heights: NDArray[Any]) -> NDArray[Any]:
+        return heights - heights.mean() if self.less else heights
+
     def _line(self, index: int, **style: Any) -> None:
-        heights = self.frames.at(index)
+        heights = self._shown(self.frames.at(index))
         steps = np.append(heights, heights[-1])  # from the first edge of each site to its last
         self.ax.step(self.edges, steps, where="post", lw=0.9, **style)

@@ -18,6 +18,7 @@ from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.model.protocol import Energies, Known
 from mesokit.method.kinetic_monte_carlo.model.table import Counts, Process, TableModel
 
+LARGEST = 700.0  # exponents beyond it have no number
 OUTSIDE = "outside"  # the name of what is beyond the end of a lattice
 Turn = tuple[int, int]  # states before and after
 
@@ -137,7 +138,8 @@ class LatticeGas(TableModel):
     def _rate(self, one: GasProcess, bonded: list[int]) -> Callable[[Counts], float]:
         def rate(counts: Counts) -> float:
             bonds = counts[bonded[0]] if bonded else 0
-            return one.rate * math.exp(-(one.barrier + bonds * one.bond) / self.kT)
+            exponent = -(one.barrier + bonds * one.bond) / self.kT
+            return one.rate * (math.exp(exponent) if exponent < LARGEST else math.inf)
 
         return rate
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
@@ -16,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import component
+from mesokit.case.component import component, show
 from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.lattice.grid import neighbour
 from mesokit.method.kinetic_monte_carlo.lattice.kinds import Kind
@@ -175,6 +176,8 @@ def in_order(processes: Sequence[Process]) -> list[Process]:
 def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, ends: bool) -> Rates:
     """The rates of processes on a lattice, with so many states of a site and of a neighbour."""
     z = kind.neighbours
+    for one in ordered:
+        _check_states(one, states, others)
     first = np.zeros(states, np.int32)
     rates: list[float] = []
     shares: list[NDArray[np.float64]] = []
@@ -198,7 +201,7 @@ def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, e
             if sum(counts) == z if all_matter else sum(counts) <= z:
                 for p, one in own:
                     found, partners = _counts(counts[::-1], kinds, one, others)
-                    share[p] = one.rate(found) if callable(one.rate) else one.rate
+                    share[p] = _rate_of(one, found)
                     total += share[p] * (1 if one.neighbour is None else partners)
             rates.append(total)
             shares.append(share)
@@ -229,6 +232,34 @@ def rates_of(ordered: Sequence[Process], states: int, others: int, kind: Kind, e
         np.array([sum(1 << b for b in some) for some in partner]),
         np.array([sum(1 << k for k in (one.directions or every)) for one in ordered]),
     )
+
+
+def _rate_of(process: Process, counts: Counts) -> float:
+    """The rate of a process with these neighbours. Raises CaseError for what is no rate."""
+    name = f"lattice.model: rate of {show(process.name)}"
+    try:
+        rate = float(process.rate(counts) if callable(process.rate) else process.rate)
+    except (ArithmeticError, LookupError, TypeError, ValueError) as error:
+        raise CaseError(f"{name}: {type(error).__name__}: {error}") from error
+    if not 0 <= rate < math.inf:
+        raise CaseError(f"{name} = {rate}: expected a finite number, at least 0")
+    return rate
+
+
+def _check_states(process: Process, states: int, others: int) -> None:
+    """Raise CaseError for a process with a state that the model has not."""
+    beside = [] if process.neighbour is None else [*process.neighbour[0], process.neighbour[1]]
+    beside += [state for some in process.counted for state in some]
+    if not all(0 <= state < states for state in process.site):
+        raise CaseError(
+            f"lattice.model: states {list(process.site)} of {show(process.name)}: expected "
+            f"numbers from 0 to {states - 1}"
+        )
+    if not all(0 <= state <= others for state in beside):
+        raise CaseError(
+            f"lattice.model: states {beside} of neighbours of {show(process.name)}: expected "
+            f"numbers from 0 to {others}"
+        )
 
 
 def _features(

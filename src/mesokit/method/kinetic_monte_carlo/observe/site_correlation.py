@@ -35,7 +35,9 @@ class SiteCorrelation(LatticeObservable):
     value_label: ClassVar[str] = "correlation $g$"
     units: ClassVar[dict[str, str]] = {"distance": "a"}
     direction: Literal["radius", "x", "y", "z"] = param(
-        "radius", doc="an axis along which pairs are; radius: all, in shells of width 1"
+        "radius",
+        doc="an axis along which pairs are; radius: all, nearest neighbours first, then in shells "
+        "of width 1",
     )
     state: str | None = param(None, doc="name of the state that is correlated (all unless said)")
 
@@ -93,13 +95,13 @@ class SiteCorrelationAccumulator(BlockAccumulator):
     def comparisons(
         self, found: Estimate, expected: Array | None, note: str
     ) -> Iterator[Comparison]:
-        """Correlation of the nearest shell, and the distance over which it falls to 1/e."""
+        """Correlation of the nearest pairs, and the distance over which it falls to 1/e."""
         if self.pairs.number < 2:
             return
         unit = np.eye(self.pairs.number)
         known = math.nan if expected is None else float(expected[1])
         nearest = found.scalar(found.value[1], unit[1])
-        yield Comparison("correlation of the nearest shell", *nearest, known, "", note)
+        yield Comparison("correlation of the nearest sites", *nearest, known, "", note)
         length = fall(self.pairs.distance, found.value)
         if length is None:
             return

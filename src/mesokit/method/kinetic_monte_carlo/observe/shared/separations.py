@@ -17,9 +17,10 @@ NONE = -1  # the shell of pairs that are in none
 class Separations:
     """Pairs of sites in shells, by their distance.
 
-    direction: "radius" has shells of width 1 around whole distances; an axis has the pairs along
-    it. distance: (shells,) mean distance of the pairs, in distances of neighbours. Shells end at
-    half of the shortest length of the lattice, where periodic images begin.
+    direction: "radius" has the nearest neighbours, and shells of width 1 around whole distances
+    from 2 on; an axis has the pairs along it. distance: (shells,) mean distance of the pairs, in
+    distances of neighbours. Shells end at half of the shortest length of the lattice, where
+    periodic images begin.
     """
 
     def __init__(self, case: Case, direction: str) -> None:
@@ -44,7 +45,12 @@ class Separations:
             for sign in (1, -1)[: len(self.first)]
         ]
         if direction == "radius":
-            self.shells = [np.where(r <= half, np.rint(r), NONE).astype(int) for r in apart]
+            # what is further away than neighbours are is not with these
+            shells = [np.where(r > 1 + 1e-6, np.maximum(np.rint(r), 2), np.rint(r)) for r in apart]
+            self.shells = [
+                np.where(r <= half, shell, NONE).astype(int)
+                for r, shell in zip(apart, shells, strict=True)
+            ]
         else:
             along = case.box.index(direction, "direction")
             period = 1 + kind.parity[along]  # rows until one is in line with the first
