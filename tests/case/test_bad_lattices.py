@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from mesokit import CaseError, Simulation
+from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.rsos import RestrictedSolidOnSolid
+from mesokit.method.kinetic_monte_carlo.model.table import Process, rates_of
+from mesokit.seam.method import summary_of
 from tests.helpers.lattices import lattice_case
 from tests.helpers.refusals import changed, has_words, refused
 
@@ -421,3 +424,44 @@ def test_arrays_are_taken_by_number():
     heights = np.arange(24).reshape(6, 4) * 1000 - 500
     simulation = Simulation(lattice_case((6, 4), RestrictedSolidOnSolid()), states=heights)
     np.testing.assert_array_equal(simulation.engine.sites(), heights.ravel())
+
+
+def raising(counts):
+    raise ZeroDivisionError("no neighbours")
+
+
+@pytest.mark.parametrize(
+    ("process", "words"),
+    [
+        (Process("on", (0, 5), 1.0), r"states \[0, 5\] of 'on': expected numbers from 0 to 1"),
+        (Process("hop", (1, 0), 1.0, neighbour=((3,), 1)), r"of neighbours of 'hop'"),
+        (Process("on", (0, 1), -1.0), "rate of 'on' = -1.0: expected a finite number"),
+        (Process("on", (0, 1), lambda counts: float("nan")), "rate of 'on' = nan"),
+        (Process("on", (0, 1), raising), "rate of 'on': ZeroDivisionError: no neighbours"),
+    ],
+)
+def test_wrong_processes_of_a_table_are_refused(process, words):
+    with pytest.raises(CaseError, match=words):
+        rates_of([process], 2, 2, KINDS["square"], False)
+
+
+def test_a_barrier_far_below_the_state_has_no_rate(capsys, tmp_path: Path):
+    case = tmp_path / "case.toml"
+    case.write_text(
+        changed(
+            GAS,
+            {
+                "bond = 0.5": "barrier = -10.0\nbond = 0.5",
+                "[lattice.model]": "[lattice.model]\nkT = 0.001",
+            },
+        )
+    )
+    has_words(refused(capsys, "check", case), ("rate of 'hop' = inf",))
+
+
+def test_a_run_that_hardly_ends_is_warned_of():
+    case = lattice_case((64, 64), Ising(), steps=10, timestep=1e300)
+    warnings = " ".join(summary_of(case).warnings)
+    assert "lattice.timestep: the run takes" in warnings
+    usual = lattice_case((64, 64), Ising(kT=4.0), steps=10)
+    assert "run takes" not in " ".join(summary_of(usual).warnings)
