@@ -22,7 +22,7 @@ from mesokit.method.kinetic_monte_carlo.model.rsos import RestrictedSolidOnSolid
 from mesokit.method.kinetic_monte_carlo.model.single_step import SingleStep
 from mesokit.method.kinetic_monte_carlo.model.solid_on_solid import SolidOnSolid
 from mesokit.method.kinetic_monte_carlo.model.wells import Link, Ring, Well, Wells
-from mesokit.method.kinetic_monte_carlo.observe.islands import Islands as Clusters
+from mesokit.method.kinetic_monte_carlo.observe.island_density import IslandDensity as Clusters
 from mesokit.method.kinetic_monte_carlo.observe.lattice_energy import LatticeEnergy
 from mesokit.method.kinetic_monte_carlo.observe.magnetisation import Magnetisation
 from mesokit.method.kinetic_monte_carlo.section import Lattice, Sublattices

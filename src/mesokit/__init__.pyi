@@ -59,6 +59,72 @@ from mesokit.method.flock.observe.number_fluctuations import (
 from mesokit.method.flock.observe.polar_order import PolarOrder as PolarOrder
 from mesokit.method.flock.section import Flock as Flock
 from mesokit.method.flock.section import FlockStart as FlockStart
+from mesokit.method.kinetic_monte_carlo.model.aggregation import Aggregation as Aggregation
+from mesokit.method.kinetic_monte_carlo.model.ballistic import Ballistic as Ballistic
+from mesokit.method.kinetic_monte_carlo.model.eden import Eden as Eden
+from mesokit.method.kinetic_monte_carlo.model.exclusion import Exclusion as Exclusion
+from mesokit.method.kinetic_monte_carlo.model.family import Family as Family
+from mesokit.method.kinetic_monte_carlo.model.ising import Ising as Ising
+from mesokit.method.kinetic_monte_carlo.model.islands import Islands as Islands
+from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess as GasProcess
+from mesokit.method.kinetic_monte_carlo.model.lattice_gas import LatticeGas as LatticeGas
+from mesokit.method.kinetic_monte_carlo.model.potts import Potts as Potts
+from mesokit.method.kinetic_monte_carlo.model.protocol import Energies as Energies
+from mesokit.method.kinetic_monte_carlo.model.random_deposition import (
+    RandomDeposition as RandomDeposition,
+)
+from mesokit.method.kinetic_monte_carlo.model.rsos import (
+    RestrictedSolidOnSolid as RestrictedSolidOnSolid,
+)
+from mesokit.method.kinetic_monte_carlo.model.single_step import SingleStep as SingleStep
+from mesokit.method.kinetic_monte_carlo.model.sintering import Sintering as Sintering
+from mesokit.method.kinetic_monte_carlo.model.solid_on_solid import SolidOnSolid as SolidOnSolid
+from mesokit.method.kinetic_monte_carlo.model.surface_diffusion import (
+    SurfaceDiffusion as SurfaceDiffusion,
+)
+from mesokit.method.kinetic_monte_carlo.model.table import Process as Process
+from mesokit.method.kinetic_monte_carlo.model.table import TableModel as TableModel
+from mesokit.method.kinetic_monte_carlo.model.wells import Link as Link
+from mesokit.method.kinetic_monte_carlo.model.wells import Ring as Ring
+from mesokit.method.kinetic_monte_carlo.model.wells import Well as Well
+from mesokit.method.kinetic_monte_carlo.model.wells import Wells as Wells
+from mesokit.method.kinetic_monte_carlo.observe.coverage import Coverage as Coverage
+from mesokit.method.kinetic_monte_carlo.observe.crossings import Crossings as Crossings
+from mesokit.method.kinetic_monte_carlo.observe.current import Current as Current
+from mesokit.method.kinetic_monte_carlo.observe.domain_length import DomainLength as DomainLength
+from mesokit.method.kinetic_monte_carlo.observe.event_rates import EventRates as EventRates
+from mesokit.method.kinetic_monte_carlo.observe.height_differences import (
+    HeightDifferences as HeightDifferences,
+)
+from mesokit.method.kinetic_monte_carlo.observe.height_steps import HeightSteps as HeightSteps
+from mesokit.method.kinetic_monte_carlo.observe.island_density import IslandDensity as IslandDensity
+from mesokit.method.kinetic_monte_carlo.observe.island_sizes import IslandSizes as IslandSizes
+from mesokit.method.kinetic_monte_carlo.observe.lattice_energy import LatticeEnergy as LatticeEnergy
+from mesokit.method.kinetic_monte_carlo.observe.magnetisation import Magnetisation as Magnetisation
+from mesokit.method.kinetic_monte_carlo.observe.order_parameter import (
+    OrderParameter as OrderParameter,
+)
+from mesokit.method.kinetic_monte_carlo.observe.roughness import Roughness as Roughness
+from mesokit.method.kinetic_monte_carlo.observe.site_correlation import (
+    SiteCorrelation as SiteCorrelation,
+)
+from mesokit.method.kinetic_monte_carlo.observe.site_profile import SiteProfile as SiteProfile
+from mesokit.method.kinetic_monte_carlo.observe.site_structure_factor import (
+    SiteStructureFactor as SiteStructureFactor,
+)
+from mesokit.method.kinetic_monte_carlo.observe.tracer_displacement import (
+    TracerDisplacement as TracerDisplacement,
+)
+from mesokit.method.kinetic_monte_carlo.observe.waiting_times import WaitingTimes as WaitingTimes
+from mesokit.method.kinetic_monte_carlo.section import Lattice as Lattice
+from mesokit.method.kinetic_monte_carlo.section import Sublattices as Sublattices
+from mesokit.method.kinetic_monte_carlo.start import AlternatingStart as AlternatingStart
+from mesokit.method.kinetic_monte_carlo.start import DropletStart as DropletStart
+from mesokit.method.kinetic_monte_carlo.start import GrainsStart as GrainsStart
+from mesokit.method.kinetic_monte_carlo.start import NucleusStart as NucleusStart
+from mesokit.method.kinetic_monte_carlo.start import SlabStart as SlabStart
+from mesokit.method.kinetic_monte_carlo.start import TerraceStart as TerraceStart
+from mesokit.method.kinetic_monte_carlo.start import UniformStart as UniformStart
 from mesokit.method.mpcd.collision.at import AT as AT
 from mesokit.method.mpcd.collision.at_plus_a import ATPlusA as ATPlusA
 from mesokit.method.mpcd.collision.demix import Demix as Demix

@@ -7,8 +7,8 @@ from mesokit.method.kinetic_monte_carlo.lattice.kinds import KINDS
 from mesokit.method.kinetic_monte_carlo.model.family import Family
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
+from mesokit.method.kinetic_monte_carlo.observe.island_density import IslandDensity
 from mesokit.method.kinetic_monte_carlo.observe.island_sizes import IslandSizes
-from mesokit.method.kinetic_monte_carlo.observe.islands import Islands
 from mesokit.method.kinetic_monte_carlo.observe.shared.islands_of import islands
 from mesokit.method.kinetic_monte_carlo.observe.shared.neighbours import Neighbours
 from mesokit.method.kinetic_monte_carlo.start import UniformStart
@@ -59,13 +59,13 @@ def test_islands_drawn_by_hand_are_counted():
     sites = np.zeros((16, 16), int)
     sites[0, 3] = sites[15, 3] = sites[15, 4] = 1  # over the periodic end along x
     sites[7, 7] = sites[8, 8] = 1  # two that touch at a corner
-    found = {one.key: one.measured for one in measured(Islands(), sites).comparisons}
+    found = {one.key: one.measured for one in measured(IslandDensity(), sites).comparisons}
     assert found["last-islands-per-site"] == pytest.approx(3 / 256)
     assert found["last-mean-size-of-islands"] == pytest.approx(5 / 3)
     assert found["last-share-of-covered-sites"] == pytest.approx(5 / 256)
-    larger = measured(Islands(smallest=2), sites).comparisons
+    larger = measured(IslandDensity(smallest=2), sites).comparisons
     assert [one.measured for one in larger] == pytest.approx([1 / 256, 3, 5 / 256])
-    ends = measured(Islands(), sites, ends=["x"]).comparisons
+    ends = measured(IslandDensity(), sites, ends=["x"]).comparisons
     assert ends[0].measured == pytest.approx(4 / 256)
     sizes = measured(IslandSizes(), sites)
     assert sizes.select(size=1)[0] == pytest.approx(2 / 256)
@@ -78,14 +78,14 @@ def test_islands_of_heights_are_above_a_level():
     heights[2:5, 2:5] = 1
     heights[3, 3] = 2
     for level, sites in ((None, 9), (1, 9), (2, 1), (0, 256)):
-        found = measured(Islands(level=level), heights, Family()).comparisons
+        found = measured(IslandDensity(level=level), heights, Family()).comparisons
         assert found[0].measured == pytest.approx(1 / 256)
         assert found[1].measured == pytest.approx(sites)
 
 
 def test_a_gas_on_a_chain_has_the_islands_of_chance():
     """(1 - p)^2 p^s islands of s sites, (1 - p) p^m of m sites and more, also on the way there."""
-    observe = [IslandSizes(every=2), Islands(every=1, smallest=2)]
+    observe = [IslandSizes(every=2), IslandDensity(every=1, smallest=2)]
     case = lattice_case(
         (50_000,), GAS, "chain", steps=40, timestep=0.1, start=UniformStart(), observe=observe[1:]
     )

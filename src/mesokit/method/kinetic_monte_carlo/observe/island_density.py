@@ -27,7 +27,7 @@ from mesokit.statistics import TimeSeries
 
 
 @component
-class Islands(LatticeObservable):
+class IslandDensity(LatticeObservable):
     """Islands per site in time: sites in a state, or columns as high as a level, that are linked.
 
     Errors come from the scatter between 16 parts of the lattice; an island counts in the part of
@@ -51,12 +51,12 @@ class Islands(LatticeObservable):
         check_parts(case)
 
 
-@accumulator_of(Islands)
-class IslandsAccumulator(BlockAccumulator):
+@accumulator_of(IslandDensity)
+class IslandDensityAccumulator(BlockAccumulator):
     """Islands and their sites per site, in parts of the lattice, in time."""
 
     memory: ClassVar[tuple[str, ...]] = ("series",)
-    observable: Islands
+    observable: IslandDensity
 
     def prepare(self) -> None:
         self.neighbours = Neighbours(self.case)
