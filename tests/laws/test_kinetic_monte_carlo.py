@@ -101,7 +101,7 @@ def test_few_spins_are_in_equilibrium(dynamics):
 def test_spins_in_a_field_are_in_equilibrium():
     model, observe = Ising(kT=2.0, field=0.3), [LatticeEnergy(every=1), Magnetisation(every=1)]
     found = results_of(
-        lattice_case((3, 4), model, steps=20_000, warmup=100, ends=["x"], observe=observe)
+        lattice_case((3, 4), model, steps=60_000, warmup=100, ends=["x"], observe=observe)
     )
     assert "mean energy" in near(found["lattice-energy"].comparisons)
     assert "mean spin" in near(found["magnetisation"].comparisons)

@@ -111,6 +111,8 @@ def lattices(method: str, size: Sequence[float], groups: Sequence[Group]) -> Ite
     """Errors of a method: a lattice of other sites than those of its group, or of other axes than
     the box has.
 
+    >>> from mesokit.case.sites import SiteLattice
+    >>> from mesokit.case.trajectory import Group, Kind
     >>> squares = Group("sites", (Kind(1.0, 12),), lattice=SiteLattice((4, 4)))
     >>> next(lattices("mine", (4, 4), [squares]))
     "method 'mine': group 'sites' has 12 sites; expected 16, as its lattice has (4, 4)"

@@ -90,7 +90,7 @@ def faces(
     >>> sorted(zip(column.tolist(), side.tolist()))  # the second stands behind the first
     [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)]
     >>> front = corners[(column == 1) & (side == 1)][0]
-    >>> front[:, 2].min(), front[:, 2].max()  # what stands out above the first
+    >>> float(front[:, 2].min()), float(front[:, 2].max())  # what stands out above the first
     (1.0, 2.0)
     """
     # Each column hides only what stands behind it, and is drawn after that: sorted by the depth of
