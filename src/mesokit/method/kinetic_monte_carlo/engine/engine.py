@@ -37,6 +37,7 @@ from mesokit.processes.signals import heard
 from mesokit.seam.engine import Integers, Interrupted, State
 
 TRACERS, WAITS = "tracers", "waits"  # what observables may have recorded
+LINE = 8  # numbers of 64 bits in a line of the cache
 AT_ONCE = 1_000_000  # events, some tenths of a second, after which a signal is looked for
 
 
@@ -84,7 +85,7 @@ class Events:
                 rim.ravel(),
                 rim.shape[1],
                 numbers_of(self.threads.size),
-                np.zeros(self.threads.size * number, np.int64),
+                np.zeros(self.threads.size * (number + 2 * LINE), np.int64),
             )
         self.choice = choice_of(given.select, self.model, grid, home)
         begin.compile_ahead(*self._arguments())
@@ -183,7 +184,9 @@ class Events:
         neighbour."""
         found = self.course.happened.copy()
         if self.blocks is not None:
-            found += self.blocks.happened.reshape(self.threads.size, -1).sum(axis=0)
+            found += self.blocks.happened.reshape(self.threads.size, -1)[:, : len(found)].sum(
+                axis=0
+            )
         return found.reshape(self._shape)
 
     def began(self) -> NDArray[np.integer]:

@@ -31,7 +31,8 @@ class Blocks(NamedTuple):
 
     seed. sectors: of a block. blocks: how many. length: a cycle of time. rim: (parts * near,)
     places of the sites near the rim of each sector. near: how many. numbers: random numbers of
-    each thread. happened: (threads, processes * (directions + 1)) events.
+    each thread. happened: (threads, so many) events by process and direction, each row in
+    lines of the cache of its own.
     """
 
     seed: np.uint64
@@ -83,7 +84,10 @@ def cycles(worker, model, sites, choice, blocks, first, last):
     for cycle in range(first, last):
         for k in range(blocks.sectors):
             sector = _order(blocks, cycle, k, blocks.sectors)
-            for block in range(worker.thread, blocks.blocks, worker.threads):
+            # blocks side by side, so that hardly any two threads write to one line of the cache
+            begin = worker.thread * blocks.blocks // worker.threads
+            end = (worker.thread + 1) * blocks.blocks // worker.threads
+            for block in range(begin, end):
                 part = block * blocks.sectors + sector
                 _work(worker.thread, model, sites, choice, blocks, cycle, part)
             barrier(worker)
