@@ -14,6 +14,7 @@ from mesokit.case.amounts import number
 from mesokit.case.case import Case
 from mesokit.case.component import component, one_of, param, show, tag
 from mesokit.case.describe.hints import Many
+from mesokit.errors import CaseError
 from mesokit.method.kinetic_monte_carlo.model.alone import rates_alone
 from mesokit.method.kinetic_monte_carlo.model.protocol import Energies, Known
 from mesokit.method.kinetic_monte_carlo.model.table import Process, TableModel
@@ -103,8 +104,8 @@ class Wells(TableModel):
                 raise ValueError("ring: it has its wells; leave out well and link")
             return self
         names = [one.name for one in self.well]
-        if len(names) < 2:
-            raise ValueError(f"well: expected 2 or more, or a ring, not {len(names)}")
+        if len(names) == 1:
+            raise ValueError("well: expected 2 or more, or a ring, not 1")
         for k, name in enumerate(names):
             if names.index(name) < k:
                 raise ValueError(f"well[#{k + 1}].name = {show(name)}: expected a name of its own")
@@ -138,6 +139,11 @@ class Wells(TableModel):
                 "the energy at the top"
             )
         return [(here, there), (there, here)] if arrow == BOTH else [(here, there)]
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without wells."""
+        if not self.well and self.ring is None:
+            raise CaseError("lattice.model.well: expected 2 or more, or a ring, not 0")
 
     def states(self) -> tuple[str, ...]:
         if self.ring is not None:
