@@ -77,11 +77,16 @@ def test_domains_in_a_plane_grow_as_the_root_of_time():
 
 @pytest.mark.long
 def test_domains_in_a_large_plane_have_the_known_lengths():
-    """Lengths of an independent program, with an error of 2 %."""
-    case = lattice_case((1024, 1024), Ising(kT=0.0), steps=1000, observe=[DomainLength(every=10)])
-    result = results_of(case)["domain-length"]
-    time, length = result.x["time"], result.value[:, 0]
-    use = time >= 30
+    """Lengths of an independent program, with an error of 2 %; means of six runs."""
+    lengths = []
+    for seed in range(1, 7):
+        case = lattice_case(
+            (1024, 1024), Ising(kT=0.0), steps=1000, seed=seed, observe=[DomainLength(every=25)]
+        )
+        result = results_of(case)["domain-length"]
+        time = result.x["time"]
+        lengths.append(result.value[:, 0])
+    length, use = np.mean(lengths, axis=0), time >= 30
     slope = np.polyfit(np.log(time[use]), np.log(length[use]), 1)[0]
     assert slope == pytest.approx(0.5, abs=0.03)
     assert np.interp(251.5, time, length) == pytest.approx(28.2, rel=0.05)
