@@ -165,7 +165,12 @@ class _MachineCode:
         others = compiled._find_referenced_environments()
         record = compiled.fndesc, compiled.environment, compiled.signature, names, others, stages
         code = Code(library.name, (), library._get_compiled_object())
-        entry = Entry(name, below, as_bytes(record), code.hash)
+        try:
+            about = as_bytes(record)
+        except Unknown:
+            counts.reasons[name] = "a part of it cannot be copied"
+            return
+        entry = Entry(name, below, about, code.hash)
         kept().keep(key, lambda store: (entry, [code]))
 
     def flush(self) -> None:

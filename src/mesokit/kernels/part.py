@@ -212,23 +212,27 @@ def result_of(library: Any, fndesc: Any, signature: Any, entry: Any, environment
 
 def as_bytes(record: Any) -> bytes:
     """Pickle what numba needs to load compiled code. Classes are named, and not copied: those of
-    a script that is run again are the same."""
+    a script that is run again are the same. Raises Unknown for what cannot be copied either, such
+    as functions that a notebook puts in place of those of Python."""
     try:
         return pickle.dumps(record)
     except Exception:  # something that has no name
-        return dumps(record)
+        try:
+            return dumps(record)
+        except Exception as error:
+            raise Unknown(str(error)) from error
 
 
 def _keep(key: str, function: Any, made: Any) -> None:
     library, below = made.library, needs_below(made.library)
     if below is None or library._reload_init:
         return
+    made.fndesc.typemap = made.fndesc.calltypes = None
     try:
         library.needs = below | {version_line(), *needs_of(function)}
+        about = as_bytes((made.fndesc, made.signature))
     except Unknown:
         return
-    made.fndesc.typemap = made.fndesc.calltypes = None
-    about = as_bytes((made.fndesc, made.signature))
     name = f"{function.__module__}:{function.__qualname__}"
 
     def entry(store: Store) -> tuple[Entry, list[Code]]:
