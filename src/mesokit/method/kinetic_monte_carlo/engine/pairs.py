@@ -1,4 +1,4 @@
-"""Pairs of neighbours by their states: all that energies need to know."""
+"""Numbers of pairs of neighbours by their states, of which energies are sums."""
 
 import numpy as np
 

@@ -132,7 +132,7 @@ def number_alone(model, state):
 def weight(model, direction, state, other):
     """What the neighbour in a direction adds to that number, by its state; MISSING: there is none.
 
-    The number tells all that the rates of what may happen at the site depend on.
+    The rates of a site depend on its surroundings through this number alone.
     """
 
 
