@@ -52,6 +52,8 @@ from mesokit.method.mpcd.field.sampled import Nodes
 from mesokit.method.mpcd.field.scheduled import Points
 from mesokit.method.mpcd.streaming import fall, halfway, vector
 from mesokit.method.mpcd.thermostat import protocol as thermostats
+from mesokit.method.spheres.common.contacts import geometry as distances
+from mesokit.method.spheres.common.contacts import groups as touching
 from mesokit.method.spheres.hard.collision import RULES
 from mesokit.method.spheres.hard.collision import protocol as spheres
 from mesokit.method.spheres.soft.pair import protocol as contacts
@@ -187,6 +189,7 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     lattices.change_of_own: lambda p, d: (WHOLE, WHOLE),
     lattices.process_of: lambda p, d: (sites(d), WHOLE, 0.5),
     flown: lambda p, d: (vec(d), vec(d), vec(d)),
+    distances.shortest: lambda p, d: (vec(3),),
     spheres.restitution: lambda p, d: (1.0,),
     spheres.next_contact: lambda p, d: (vec(d), vec(d), 1.0, 0.0),
     spheres.step_of_energy: lambda p, d: (1.0, 1.0),
@@ -222,6 +225,8 @@ def parts(d: int) -> Iterator[Any]:
     yield interactions.Energy()
     yield from (rule().kernel() for rule in (*RULES, *NOISES))
     yield from (Linear(1.0, 0.0, 1.0, 0.0, 1.0), HertzContact(1.0, 1.0, 1.0))
+    yield touching.Box(vec(3), vec(3))
+    yield touching.SlidBox(vec(3), vec(3), 1.0, 1.0)
     yield interactions.Virial(1.0, tensor, 1.0)
     yield Ising().kernel(LATTICES[d], False)
     yield Ising(moves="exchange").kernel(LATTICES[d], False)

@@ -6,9 +6,10 @@ import numpy as np
 
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.contacts.groups import INVERSE
 from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.walls import AMPLITUDE, MOVES, other_walls, room_of, surface_rows
-from mesokit.method.spheres.soft.engine.groups import INVERSE, Motion
+from mesokit.method.spheres.soft.engine.groups import Motion
 from mesokit.method.spheres.soft.engine.system import SoftSetup, SoftSystem
 from mesokit.method.spheres.soft.laws import contact_of, others_of, three_axes
 from mesokit.method.spheres.soft.pair.spring_dashpot import SpringDashpot

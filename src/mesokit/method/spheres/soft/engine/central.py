@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mesokit.method.spheres.common.contacts.geometry import from_to, from_wall, reach, row
+from mesokit.method.spheres.common.contacts.taken import take
 from mesokit.method.spheres.soft.engine.acting import act, measure, turns
-from mesokit.method.spheres.soft.engine.geometry import from_to, from_wall, reach, row
 from mesokit.method.spheres.soft.engine.groups import ENERGY, NEAREST, VIRIAL
-from mesokit.method.spheres.soft.engine.taken import take
 from mesokit.potential.protocol import central
 from mesokit.scalar.fixed_point import ROUNDER_BITS, bits, fixed, quanta
 from mesokit.scalar.jit import scalar

@@ -5,8 +5,8 @@ A row of four numbers is one half of a cache line, so that all data of a neighbo
 
 from typing import Any, NamedTuple
 
-REACH = 3  # column of `place`: how far a sphere reaches, a radius or half of a cut-off
-INVERSE = 3  # column of `velocity` and `spin`: the inverse of mass and of moment of inertia
+from mesokit.method.spheres.common.contacts.groups import Box, Lists, Walls
+
 FARTHEST, NEAREST, LARGEST, DONE, PENDING = range(5)  # columns of `noted` of a thread
 ENERGY, VIRIAL, TOUCHING, READINGS = 0, 1, 7, 8  # columns of the readings of a sphere
 
@@ -28,55 +28,6 @@ class Bodies(NamedTuple):
     torque: Any
     images: Any
     number: Any
-
-
-class Box(NamedTuple):
-    """Lengths and their inverses; the inverse is 0 along axes that do not repeat."""
-
-    size: tuple[float, float, float]
-    inverse: tuple[float, float, float]
-
-
-class Lists(NamedTuple):
-    """Neighbour lists, by places in memory.
-
-    skin: how far lists go beyond the reach; halves: whether laws take each pair once; count (n,)
-    and near (n, most): the lists, filled up to whole groups of eight with the sphere itself; own
-    (n,): how many, from the front, this sphere finds, where each pair is taken once; begin (n,):
-    its first contact, and springs (contacts, width); made_at (n, 4): where the
-    spheres were.
-    """
-
-    skin: float
-    halves: bool
-    count: Any
-    own: Any
-    near: Any
-    begin: Any
-    springs: Any
-    made_at: Any
-
-
-class Walls(NamedTuple):
-    """rows (walls, 14): see `common.walls`; own (walls, 2): damping ratio and friction of
-    each; springs (n * walls, width) of contacts; solid: walls of other shapes, see `solid`."""
-
-    rows: Any
-    own: Any
-    springs: Any
-    solid: Any
-
-
-class Solid(NamedTuple):
-    """Walls of any shape: tables of `geometry.solids`, pattern: a place in the box; own
-    (bodies, 2): damping ratio and friction of each; terms (n, 3): which terms a sphere touches, -1
-    where it touches none; springs (n * 3, width): of these contacts."""
-
-    bodies: Any
-    pattern: Any
-    own: Any
-    terms: Any
-    springs: Any
 
 
 class World(NamedTuple):

@@ -14,10 +14,11 @@ from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import share
 from mesokit.loops.neighbours import nearest_image, outdated
 from mesokit.loops.threads import barrier
+from mesokit.method.spheres.common.contacts.geometry import row
+from mesokit.method.spheres.common.contacts.groups import INVERSE
 from mesokit.method.spheres.soft.engine.acting import act, turns
 from mesokit.method.spheres.soft.engine.contact.room import room_of_thread
-from mesokit.method.spheres.soft.engine.geometry import row
-from mesokit.method.spheres.soft.engine.groups import DONE, FARTHEST, INVERSE, PENDING
+from mesokit.method.spheres.soft.engine.groups import DONE, FARTHEST, PENDING
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import METHOD, Counter, normals, words
 from mesokit.scalar.vector import added_scaled

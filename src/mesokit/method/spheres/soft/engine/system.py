@@ -7,56 +7,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.geometry.protocol import Nothing
-from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.kernels.packing import Packing
-from mesokit.loops.layout import by_number
-from mesokit.loops.neighbours import GAP, inverse_lengths
-from mesokit.loops.threads import Threads
+from mesokit.loops.neighbours import GAP
+from mesokit.method.spheres.common.contacts.groups import INVERSE, NEVER, REACH, WITHIN_THREAD
+from mesokit.method.spheres.common.contacts.listed import Listed, ListedSpheres, Others
+from mesokit.method.spheres.common.contacts.remembered import pairs_of, remember
+from mesokit.method.spheres.common.contacts.taken import all_taken, in_numbers
 from mesokit.method.spheres.common.walls import AMPLITUDE, AXIS, KIND, PLACE, PLANE
 from mesokit.method.spheres.soft.engine import groups
 from mesokit.method.spheres.soft.engine.acting import measure_all
-from mesokit.method.spheres.soft.engine.contact.remembered import carry_springs, pairs_of, remember
 from mesokit.method.spheres.soft.engine.contact.room import rooms
-from mesokit.method.spheres.soft.engine.groups import (
-    Bodies,
-    Box,
-    Lists,
-    Motion,
-    Solid,
-    Walls,
-    World,
-)
-from mesokit.method.spheres.soft.engine.lists import GROUP, make_lists, sort
-from mesokit.method.spheres.soft.engine.solid import MOST
+from mesokit.method.spheres.soft.engine.groups import Bodies, Motion, World
 from mesokit.method.spheres.soft.engine.step import advance, find_forces
-from mesokit.method.spheres.soft.engine.taken import all_taken, in_numbers
 from mesokit.scalar.random import Counter
 from mesokit.seam.engine import Array
 
-CELLS = 4_000_000  # at most
-ROUNDING = 1 + 1e-9  # cells are larger by this than they need to be
 KEPT = ("place", "velocity", "spin", "force", "torque", "images")  # arrays in checkpoints
-
-
-class Grid(NamedTuple):
-    """Cells along each axis, their number per length, the number of cells on both sides that a list
-    searches, and the square of the longest distance on a list."""
-
-    cells: tuple[int, int, int]
-    inverse: tuple[float, float, float]
-    wide: tuple[int, int, int]
-    farthest: float
-
-
-class Others(NamedTuple):
-    """Walls of any shape: bodies, pattern and own as of `groups.Solid`; kept: the owner of the
-    memory of their tables."""
-
-    bodies: Any
-    pattern: tuple[float, ...]
-    own: Array
-    kept: Any
 
 
 class SoftSetup(NamedTuple):
@@ -86,61 +52,48 @@ class SoftSetup(NamedTuple):
     fastest: float = math.inf
 
 
-class SoftSystem:
+def _bodies(n: int) -> Bodies:
+    place, velocity, seen, spin = (np.zeros((n, 4)) for _ in range(4))
+    force, torque = np.zeros((n, 3), np.int64), np.zeros((n, 3), np.int64)
+    images, number = np.zeros((n, 3), np.int32), np.zeros(n, np.int64)
+    return Bodies(place, velocity, seen, spin, force, torque, images, number)
+
+
+def _listed(given: SoftSetup) -> Listed:
+    once = WITHIN_THREAD if given.halves else NEVER
+    lists = given.size, given.closed, given.reach, given.skin, once, given.width
+    return Listed(*lists, given.rows, given.own, given.others)
+
+
+class SoftSystem(ListedSpheres):
     """Soft spheres in a box, their neighbour lists, and the threads that move them."""
 
+    make_bodies = staticmethod(_bodies)
+
     def __init__(self, given: SoftSetup, threads: int) -> None:
-        n, self.given, self.worker = len(given.reach), given, Threads(threads)
-        self.n, self.dimension, self._packing = n, len(given.size), Packing()
-        self.box = _box(given)
-        self.grid = _grid(given, self.box)
-        self.bodies, self.spare = _bodies(n), _bodies(n)
-        self.walls, self.lists, self.old = self._walls(), self._lists(GROUP), self._lists(GROUP)
-        self.cell, self.order = np.zeros(n, np.int64), np.zeros(n, np.int64)
-        self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
-        self.scratch = np.zeros((threads, n + GROUP), np.int64)
+        super().__init__(_listed(given), threads)
+        self.given, self._packing = given, Packing()
         self.noted = np.zeros((threads, GAP))
         surfaces = len(given.rows) + (0 if given.others is None else len(given.others.own))
         self.rooms = rooms(threads, surfaces)
         self.noted.view(np.int64)[:, groups.NEAREST] = np.float64(np.inf).view(np.int64)
         self.worker.compile_ahead(advance, *self._arguments(0, 0))
 
-    def _walls(self) -> Walls:
-        """Walls without contacts."""
-        n, given = self.n, self.given
-        solid: Any = Nothing()
-        if (others := given.others) is not None:
-            terms, springs = np.full((n, MOST), NO_TERM, np.int32), self._springs(n * MOST)
-            solid = Solid(others.bodies, others.pattern, others.own, terms, springs)
-        return Walls(given.rows, given.own, self._springs(n * len(given.rows)), solid)
-
-    def _springs(self, contacts: int) -> Array:
-        return np.zeros((contacts, self.given.width))
-
-    def _lists(self, most: int) -> Lists:
-        n, given = self.n, self.given
-        count, own, begin = (np.zeros(n, np.int64) for _ in range(3))
-        near, springs = np.zeros((n, most), np.int32), np.zeros((n * given.width, given.width))
-        return Lists(given.skin, given.halves, count, own, near, begin, springs, np.zeros((n, 4)))
-
     # --- start and steps --------------------------------------------------------------------------
 
     def fill(self, places: Array, velocities: Array, spins: Array) -> None:
         """Put spheres at these places (n, d), with velocities (n, d) and spins ((n,) or (n, 3))."""
         given, bodies, d = self.given, self.bodies, self.dimension
-        size, repeats = np.array(given.size), ~np.array(given.closed)
-        images = np.where(repeats, np.floor(places / size), 0).astype(np.int32)
-        inside = places - images * size
-        inside = np.where(repeats & (inside >= size), 0.0, inside)
+        inside, images = self.inside(places)
         for array in bodies:
             array[:] = 0
         bodies.number[:] = np.arange(self.n)
-        bodies.place[:, :d], bodies.place[:, groups.REACH] = inside, given.reach
+        bodies.place[:, :d], bodies.place[:, REACH] = inside, given.reach
         bodies.images[:, :d] = images
-        bodies.velocity[:, :d], bodies.velocity[:, groups.INVERSE] = velocities, 1 / given.masses
+        bodies.velocity[:, :d], bodies.velocity[:, INVERSE] = velocities, 1 / given.masses
         bodies.spin[:, 2 if d == 2 else slice(3)] = spins
-        bodies.spin[:, groups.INVERSE] = 1 / given.inertia
-        self.walls, self.lists = self._walls(), self._lists(GROUP)
+        bodies.spin[:, INVERSE] = 1 / given.inertia
+        self.forget_contacts()
         self.renew()
 
     @property
@@ -201,30 +154,11 @@ class SoftSystem:
     # --- lists ------------------------------------------------------------------------------------
 
     def renew(self) -> None:
-        """Sort spheres by cells, and make neighbour lists."""
-        bodies, spare = self.bodies, self.spare
-        if not np.isfinite(bodies.place).all():
-            raise RunError("places are no numbers any more; expected a shorter timestep")
+        """Sort spheres by cells, and make neighbour lists. Raises RunError for lost spheres."""
         if math.isfinite(self.given.fastest):
             self._require_followed()
         self._require_inside()
-        sort(self.grid, bodies.place, self.cell, self.begins, self.order)
-        for old, new in zip(bodies, spare, strict=True):
-            np.take(old, self.order, axis=0, out=new, mode="clip")
-        self.bodies, self.spare = spare, bodies
-        self.lists, self.old = self.old, self.lists
-        self._sort_walls()
-        columns = np.zeros((4, self.n + GROUP))
-        columns[:, : self.n] = self.bodies.place.T
-        while True:
-            memory = self.bodies, self.box, self.lists, self.scratch
-            self.worker.run(make_lists, self.grid, self.begins, columns, *memory)
-            longest = int(self.lists.count.max())
-            if longest < self.lists.near.shape[1]:  # one place is written beyond the end
-                break
-            self.lists = self._lists(longest + GROUP)
-        if self.given.halves:
-            self._carry_springs()
+        super().renew()
 
     def _require_followed(self) -> None:
         """Raise RunError for a sphere so fast that its contact with one at rest has few steps."""
@@ -252,36 +186,7 @@ class SoftSystem:
                     "contacts are too soft for what falls or moves; expected shorter contacts"
                 )
 
-    def _carry_springs(self) -> None:
-        lists = self.lists
-        np.cumsum(lists.own[:-1], out=lists.begin[1:])
-        contacts = int(lists.own.sum())
-        if len(lists.springs) < contacts:
-            springs = np.zeros((contacts + contacts // 8, self.given.width))
-            self.lists = lists._replace(springs=springs)
-        self.worker.run(carry_springs, self.order, self.old, self.lists)
-
-    def _sort_walls(self) -> None:
-        walls, order = self.walls, self.order
-
-        def ordered(springs: Array) -> Array:
-            return self._of_each(springs)[order].reshape(springs.shape)
-
-        if self.given.others is not None:
-            solid = walls.solid
-            terms, beside = solid.terms[order], ordered(solid.springs)
-            walls = walls._replace(solid=solid._replace(terms=terms, springs=beside))
-        self.walls = walls._replace(springs=ordered(walls.springs))
-
-    def _of_each(self, springs: Array) -> Array:
-        """Springs of contacts with walls, sphere by sphere."""
-        return springs.reshape(self.n, len(springs) // self.n, springs.shape[1])
-
     # --- reading ----------------------------------------------------------------------------------
-
-    def by_number(self, rows: NDArray[Any]) -> NDArray[Any]:
-        """Rows in the order of memory, by particle number."""
-        return by_number(self.bodies.number, rows)
 
     def readings(self, time: float) -> NDArray[np.int64]:
         """Readings of every sphere, by number, in quanta; see `acting.measure`."""
@@ -295,10 +200,7 @@ class SoftSystem:
         found = {name: self.by_number(getattr(bodies, name)[:, :3]) for name in KEPT}
         if self.given.width:
             found["pairs"], found["springs"] = pairs_of(self.lists, bodies.number)
-            found["wall_springs"] = self.by_number(self._of_each(self.walls.springs))
-        if self.given.others is not None:
-            found["solid_terms"] = self.by_number(self.walls.solid.terms)
-            found["solid_springs"] = self.by_number(self._of_each(self.walls.solid.springs))
+        found |= self.remembered_at_walls()
         if self.rooms.taken.size:
             found["taken"] = all_taken(self.rooms.taken)
         return found
@@ -307,53 +209,16 @@ class SoftSystem:
         """Continue from a state."""
         bodies, given = self.bodies, self.given
         bodies.number[:] = np.arange(self.n)
-        bodies.place[:, groups.REACH] = given.reach
-        bodies.velocity[:, groups.INVERSE] = 1 / given.masses
-        bodies.spin[:, groups.INVERSE] = 1 / given.inertia
+        bodies.place[:, REACH] = given.reach
+        bodies.velocity[:, INVERSE] = 1 / given.masses
+        bodies.spin[:, INVERSE] = 1 / given.inertia
         for name in KEPT:
             getattr(bodies, name)[:, :3] = state[name]
-        self.walls, self.lists = self._walls(), self._lists(GROUP)
-        if given.width:
-            self._of_each(self.walls.springs)[:] = state["wall_springs"]
-        if given.others is not None:
-            self.walls.solid.terms[:] = state["solid_terms"]
-            self._of_each(self.walls.solid.springs)[:] = state["solid_springs"]
+        self.forget_contacts()
+        self.remember_at_walls(state)
         self.forget_taken()
         if self.rooms.taken.size:
             self.rooms.taken[0] = state["taken"]
         self.renew()
         if given.width:
             remember(self.lists, self.bodies.number, state["pairs"], state["springs"])
-
-
-def _box(given: SoftSetup) -> Box:
-    size = [*given.size, 1.0, 1.0][:3]
-    shut = [*given.closed, True, True][:3]
-    return Box(_three(size), _three(inverse_lengths(size, shut)))
-
-
-def _three(numbers: Any, kind: type = float) -> tuple[Any, Any, Any]:
-    x, y, z = (kind(number) for number in numbers)
-    return x, y, z
-
-
-def _grid(given: SoftSetup, box: Box) -> Grid:
-    """Cells of half the length that lists reach, of which five lie along an axis at least; or of
-    all of it, three at least; or one."""
-    d, reach = len(given.size), 2 * float(given.reach.max()) + given.skin
-    least = (float(np.prod(given.size)) / CELLS) ** (1 / d)
-    cells, wide = [1, 1, 1], [0, 0, 0]
-    for k, length in enumerate(given.size):
-        for width in (1, 2):
-            number = int(length / max(reach / width * ROUNDING, least))
-            if number >= 2 * width + 1:
-                cells[k], wide[k] = number, width
-    inverse = [number / length for number, length in zip(cells, box.size, strict=True)]
-    return Grid(_three(cells, int), _three(inverse), _three(wide, int), (reach * ROUNDING) ** 2)
-
-
-def _bodies(n: int) -> Bodies:
-    place, velocity, seen, spin = (np.zeros((n, 4)) for _ in range(4))
-    force, torque = np.zeros((n, 3), np.int64), np.zeros((n, 3), np.int64)
-    images, number = np.zeros((n, 3), np.int32), np.zeros(n, np.int64)
-    return Bodies(place, velocity, seen, spin, force, torque, images, number)

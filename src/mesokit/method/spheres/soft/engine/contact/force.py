@@ -8,10 +8,10 @@ the force of the dashpot alone.
 import math
 from typing import Any, NamedTuple
 
+from mesokit.method.spheres.common.contacts.geometry import reach, row
+from mesokit.method.spheres.common.contacts.groups import INVERSE
+from mesokit.method.spheres.common.contacts.remembered import Slider, Springs, stretched
 from mesokit.method.spheres.soft.engine.acting import turns
-from mesokit.method.spheres.soft.engine.contact.remembered import Slider, Springs, stretched
-from mesokit.method.spheres.soft.engine.geometry import reach, row
-from mesokit.method.spheres.soft.engine.groups import INVERSE
 from mesokit.method.spheres.soft.pair.protocol import Closing, normal_energy, normal_force
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added, added_scaled, dot, outer, scaled

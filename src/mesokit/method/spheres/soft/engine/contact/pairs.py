@@ -8,6 +8,13 @@ The bits depend neither on that nor on batches. Springs are kept where forces ar
 
 import numpy as np
 
+from mesokit.method.spheres.common.contacts.geometry import from_to, reach, row
+from mesokit.method.spheres.common.contacts.remembered import (
+    NO_SPRINGS,
+    keep,
+    kept,
+    kept_between,
+)
 from mesokit.method.spheres.soft.engine.central import add_product
 from mesokit.method.spheres.soft.engine.contact.force import (
     answer,
@@ -17,12 +24,6 @@ from mesokit.method.spheres.soft.engine.contact.force import (
     meeting,
     torque_of,
     torque_on_other,
-)
-from mesokit.method.spheres.soft.engine.contact.remembered import (
-    NO_SPRINGS,
-    keep,
-    kept,
-    kept_between,
 )
 from mesokit.method.spheres.soft.engine.contact.room import (
     BACK,
@@ -46,7 +47,6 @@ from mesokit.method.spheres.soft.engine.contact.room import (
     store_springs,
 )
 from mesokit.method.spheres.soft.engine.contact.sums import abs_sum, add, counted, subtract
-from mesokit.method.spheres.soft.engine.geometry import from_to, reach, row
 from mesokit.method.spheres.soft.engine.groups import ENERGY, TOUCHING
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.loops.layout import zeros
+from mesokit.method.spheres.common.contacts.remembered import Springs
+from mesokit.method.spheres.common.contacts.taken import WIDTH
 from mesokit.method.spheres.soft.engine.contact.force import Meeting
-from mesokit.method.spheres.soft.engine.contact.remembered import Springs
-from mesokit.method.spheres.soft.engine.taken import WIDTH
 from mesokit.scalar.jit import elementwise, for_each, scalar
 
 BATCH = 64  # contacts; their data fit in the first-level cache

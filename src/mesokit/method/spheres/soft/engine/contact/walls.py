@@ -2,6 +2,18 @@
 
 from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.solids.bodies import BODY, NO_TERM, surface_velocity
+from mesokit.method.spheres.common.contacts.geometry import from_wall, reach, row
+from mesokit.method.spheres.common.contacts.groups import Solid
+from mesokit.method.spheres.common.contacts.remembered import NO_SPRINGS, keep, kept
+from mesokit.method.spheres.common.contacts.solid import (
+    Place,
+    contact_with,
+    forget_others,
+    lengthened,
+    place_at_solid,
+    shortened,
+)
+from mesokit.method.spheres.common.contacts.taken import take
 from mesokit.method.spheres.soft.engine.acting import act, beside, measure, measure_beside
 from mesokit.method.spheres.soft.engine.contact.force import (
     NONE,
@@ -14,19 +26,8 @@ from mesokit.method.spheres.soft.engine.contact.force import (
     torque_of,
 )
 from mesokit.method.spheres.soft.engine.contact.pairs import add_contact_forces, measure_pairs
-from mesokit.method.spheres.soft.engine.contact.remembered import NO_SPRINGS, keep, kept
 from mesokit.method.spheres.soft.engine.contact.sums import abs_sum, add, counted
-from mesokit.method.spheres.soft.engine.geometry import from_wall, reach, row
-from mesokit.method.spheres.soft.engine.groups import ENERGY, LARGEST, TOUCHING, Solid
-from mesokit.method.spheres.soft.engine.solid import (
-    Place,
-    contact_with,
-    forget_others,
-    lengthened,
-    place_at_solid,
-    shortened,
-)
-from mesokit.method.spheres.soft.engine.taken import take
+from mesokit.method.spheres.soft.engine.groups import ENERGY, LARGEST, TOUCHING
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.pointer import whole, word

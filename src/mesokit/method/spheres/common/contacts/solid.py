@@ -19,7 +19,7 @@ from mesokit.geometry.solids.bodies import (
     part_normal,
     term_clearance,
 )
-from mesokit.method.spheres.soft.engine.contact.remembered import NO_SPRINGS, keep
+from mesokit.method.spheres.common.contacts.remembered import NO_SPRINGS, keep
 from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
 from mesokit.scalar.pointer import whole, word
 from mesokit.scalar.vector import added_scaled, dot, scaled

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import share
-from mesokit.method.spheres.soft.engine.groups import Lists
+from mesokit.method.spheres.common.contacts.groups import Lists
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added_scaled, dot, scaled
 from mesokit.seam.engine import Array

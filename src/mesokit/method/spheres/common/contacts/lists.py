@@ -5,8 +5,8 @@ import numpy as np
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.cells import cell_after, cell_along, cell_of, runs_around
 from mesokit.loops.layout import share
-from mesokit.loops.neighbours import nearest_image
-from mesokit.method.spheres.soft.engine.geometry import row
+from mesokit.method.spheres.common.contacts.geometry import row, shortest
+from mesokit.method.spheres.common.contacts.groups import IN_ALL, NEVER
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
 
@@ -56,8 +56,8 @@ def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
                     line = grid.cells[0] * (y_there + grid.cells[1] * z_there)
                     for span in runs_around(grid, box, begins, line, x_cell, grid.wide[0]):
                         found = list_span(columns, box, lists, i, span, found, beside)
-        if lists.halves:
-            lists.own[i] = own_first(lists, i, found, first)
+        if lists.once != NEVER:
+            lists.own[i] = own_first(lists, i, found, 0 if lists.once == IN_ALL else first)
         # Lists are filled up with the sphere itself.
         lists.count[i] = (found + GROUP - 1) // GROUP * GROUP
         for s in range(found, min(lists.count[i], lists.near.shape[1])):
@@ -88,7 +88,7 @@ def list_span(columns, box, lists, i, span, found, beside):
     beyond, reaches = columns[3, i] + lists.skin, columns[3, begin:whole]
     # All squared distances of a span, up to a whole vector beyond its end.
     for k in range(np.uint64(whole - begin)):
-        separation = nearest_image(box, (x - xs[k], y - ys[k], z - zs[k]))
+        separation = shortest(box, (x - xs[k], y - ys[k], z - zs[k]))
         far = beyond + reaches[k]
         beside[k] = 1 if dot(separation, separation) <= far * far else 0
     if begin <= i < end:
@@ -104,7 +104,8 @@ def list_span(columns, box, lists, i, span, found, beside):
 
 @scalar
 def own_first(lists, i, found, first):
-    """Put those in front that are not found from the sphere before in memory; how many they are."""
+    """Put those in front that are not found from the sphere before in memory, of those from number
+    `first` on; how many they are."""
     own, room = 0, lists.near.shape[1]
     # Partition in place: pairs that this sphere treats come first. A pair within a thread is
     # treated once, from the sphere before in memory; a pair of two threads is treated by each.

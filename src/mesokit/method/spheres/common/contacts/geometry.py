@@ -1,9 +1,10 @@
 """Distances of spheres from one another and from walls."""
 
 from mesokit.loops.neighbours import nearest_image
+from mesokit.method.spheres.common.contacts.groups import REACH, Box, SlidBox
 from mesokit.method.spheres.common.walls import KIND, MOVES, PLANE, entries, outward, vibration
-from mesokit.method.spheres.soft.engine.groups import REACH
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.elementary import rint
+from mesokit.scalar.jit import generic, scalar
 from mesokit.scalar.vector import added_scaled
 
 
@@ -13,10 +14,24 @@ def row(array, i):
     return array[i, 0], array[i, 1], array[i, 2]
 
 
+@generic
+def shortest(box, separation):
+    """The shortest of the vectors that lead from images of one place to another."""
+
+
+shortest.register(Box)(lambda box, separation: nearest_image(box, separation))
+
+
+@shortest.register(SlidBox)
+def _(box, separation):
+    x, y, z = separation
+    return nearest_image(box, (x - rint(y * box.inverse[1]) * box.offset, y, z))
+
+
 @scalar
 def from_to(box, place, j, r):
     """The vector that leads from sphere j to r: bit for bit minus that from r to j."""
-    return nearest_image(box, added_scaled(r, -1.0, row(place, j)))
+    return shortest(box, added_scaled(r, -1.0, row(place, j)))
 
 
 @scalar
