@@ -16,6 +16,7 @@ METHODS = {  # value of `run.method`: the module that holds the METHOD
     "flock": "mesokit.method.flock.method",
     "event-driven": "mesokit.method.spheres.hard.method",
     "soft-spheres": "mesokit.method.spheres.soft.method",
+    "contact-dynamics": "mesokit.method.spheres.rigid.method",
     "kinetic-monte-carlo": "mesokit.method.kinetic_monte_carlo.method",
 }
 DEFAULT = next(iter(METHODS))

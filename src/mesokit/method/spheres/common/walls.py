@@ -12,6 +12,7 @@ from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry.region import Part, Room, Term
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
 from mesokit.loops.neighbours import nearest_image
 from mesokit.scalar.jit import elementwise, scalar
@@ -122,6 +123,20 @@ def surface_rows(case: Case, without: Sequence[int] = ()) -> SurfaceRows:
         np.array(body_of, np.int64),
         tuple(names),
     )
+
+
+def surfaces_of(case: Case) -> tuple[int, NDArray[np.int64]]:
+    """The number of surfaces, wall by wall, and the number of the surface of each row of walls, and
+    then of each body of the other walls (rows + bodies,)."""
+    which = other_walls(case)
+    rows = surface_rows(case, which)
+    walls = np.zeros(len(rows.names), np.int64)
+    walls[rows.surface] = [i for i, _ in rows.surfaces]
+    others = Solids(case.walls, case.box, only=which).walls if which else []
+    bodies = np.concatenate([walls, np.array(others, np.int64)])
+    rank = np.empty(len(bodies), np.int64)
+    rank[np.argsort(bodies, kind="stable")] = np.arange(len(bodies))
+    return len(bodies), np.concatenate([rank[rows.surface], rank[len(walls) :]])
 
 
 def moving_plates(case: Case, time: float) -> tuple[Plate, ...]:

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.geometry.shape_protocol import closed_axes
@@ -126,20 +125,6 @@ def others_of(case: Case, made: Made) -> Others | None:
     away = float(made.diameters.max()) / 2 + _ahead(case)
     own = np.array([_own(case, body.surface) for body in solids.bodies])
     return Others(solids.reaching(away), solids.pattern, own, solids)
-
-
-def surfaces_of(case: Case) -> tuple[int, NDArray[np.int64]]:
-    """The number of surfaces, wall by wall, and the number of the surface of each row of walls, and
-    then of each body of the other walls (rows + bodies,)."""
-    which = other_walls(case)
-    rows = surface_rows(case, which)
-    walls = np.zeros(len(rows.names), np.int64)
-    walls[rows.surface] = [i for i, _ in rows.surfaces]
-    others = Solids(case.walls, case.box, only=which).walls if which else []
-    bodies = np.concatenate([walls, np.array(others, np.int64)])
-    rank = np.empty(len(bodies), np.int64)
-    rank[np.argsort(bodies, kind="stable")] = np.arange(len(bodies))
-    return len(bodies), np.concatenate([rank[rows.surface], rank[len(walls) :]])
 
 
 def _own(case: Case, surface: Surface) -> tuple[float, float]:

@@ -1,6 +1,7 @@
 """Spheres in memory: sorting by cells, neighbour lists and what contacts remember."""
 
-from typing import Any, ClassVar, NamedTuple
+from abc import abstractmethod
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,18 +60,19 @@ class Listed(NamedTuple):
 class ListedSpheres:
     """Spheres in a box and their neighbour lists, on some threads.
 
-    `bodies` and `spare` are a NamedTuple of arrays in the order of memory, `make_bodies` makes one.
+    `bodies` and `spare` are a NamedTuple of arrays in the order of memory.
     """
 
-    make_bodies: ClassVar[Any]
+    @abstractmethod
+    def make_bodies(self, n: int) -> Any:
+        """Memory for so many."""
 
     def __init__(self, listed: Listed, threads: int) -> None:
         n, self.listed, self.worker = len(listed.reach), listed, Threads(threads)
         self.n, self.dimension = n, len(listed.size)
         self.box: Any = _box(listed)
         self.grid = _grid(listed, self.box)
-        made = type(self).make_bodies
-        self.bodies, self.spare = made(n), made(n)
+        self.bodies, self.spare = self.make_bodies(n), self.make_bodies(n)
         self.walls, self.lists, self.old = self._walls(), self._lists(GROUP), self._lists(GROUP)
         self.cell, self.order = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
@@ -98,6 +100,10 @@ class ListedSpheres:
         """Begin without contacts."""
         self.walls, self.lists = self._walls(), self._lists(GROUP)
 
+    def box_of_lists(self) -> Any:
+        """The box as it is when lists are made."""
+        return self.box
+
     def inside(self, places: Array) -> tuple[Array, NDArray[np.int32]]:
         """Places (n, d) in the box, and image counts (n, d)."""
         listed = self.listed
@@ -120,7 +126,7 @@ class ListedSpheres:
         columns = np.zeros((4, self.n + GROUP))
         columns[:, : self.n] = self.bodies.place.T
         while True:
-            memory = self.bodies, self.box, self.lists, self.scratch
+            memory = self.bodies, self.box_of_lists(), self.lists, self.scratch
             self.worker.run(make_lists, self.grid, self.begins, columns, *memory)
             longest = int(self.lists.count.max())
             if longest < self.lists.near.shape[1]:  # one place is written beyond the end

@@ -10,6 +10,7 @@ import numpy as np
 
 from mesokit.geometry.primitive import KINDS as NUMBER
 from mesokit.geometry.solids.bodies import (
+    BODY,
     KINDS,
     NEAR,
     NO_TERM,
@@ -17,6 +18,7 @@ from mesokit.geometry.solids.bodies import (
     home_cell,
     part_clearance,
     part_normal,
+    surface_velocity,
     term_clearance,
 )
 from mesokit.method.spheres.common.contacts.remembered import NO_SPRINGS, keep
@@ -95,6 +97,32 @@ def place_at_solid(solid, r, within, one, other):
     x, a, b = shortened(r, axes), shortened(one, axes), shortened(other, axes)
     distance, normal, term = nearest_place(tables, x, within, a, b)
     return Place(distance, lengthened(normal), term)
+
+
+@scalar
+def touched(solid, r, within):
+    """The surfaces nearer than `within` to a place: three at most."""
+    nothing = (0.0, 0.0, 0.0)
+    nowhere = Place(within, nothing, NO_TERM)
+    first = place_at_solid(solid, r, within, nothing, nothing)
+    second, third = nowhere, nowhere
+    if first.term != NO_TERM:
+        second = place_at_solid(solid, r, within, first.normal, nothing)
+    if second.term != NO_TERM:
+        third = place_at_solid(solid, r, within, first.normal, second.normal)
+    return first, second, third
+
+
+@scalar
+def body_of(solid, term):
+    """Number of the body that a term is of."""
+    return whole(word(solid.bodies.tables, BODY), term)
+
+
+@scalar
+def moves_at(solid, r, term):
+    """Velocity of the surface of a term beside a place."""
+    return lengthened(surface_velocity(solid.bodies.tables, term, shortened(r, solid.pattern)))
 
 
 @scalar

@@ -11,9 +11,10 @@ from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.method.spheres.common.engine import SphereEngine
 from mesokit.method.spheres.common.start.first_state import Started
+from mesokit.method.spheres.common.walls import surfaces_of
 from mesokit.method.spheres.soft.engine import groups
 from mesokit.method.spheres.soft.engine.system import SoftSystem
-from mesokit.method.spheres.soft.laws import given_of, surfaces_of
+from mesokit.method.spheres.soft.laws import given_of
 from mesokit.method.spheres.soft.scales import timestep_of
 from mesokit.seam.engine import Array, Integers
 

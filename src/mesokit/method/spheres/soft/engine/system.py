@@ -68,7 +68,8 @@ def _listed(given: SoftSetup) -> Listed:
 class SoftSystem(ListedSpheres):
     """Soft spheres in a box, their neighbour lists, and the threads that move them."""
 
-    make_bodies = staticmethod(_bodies)
+    def make_bodies(self, n: int) -> Bodies:
+        return _bodies(n)
 
     def __init__(self, given: SoftSetup, threads: int) -> None:
         super().__init__(_listed(given), threads)

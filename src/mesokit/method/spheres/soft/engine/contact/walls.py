@@ -1,22 +1,20 @@
 """Contacts of spheres with walls and solids, and the forces and readings of all contacts."""
 
 from mesokit.geometry.protocol import Nothing
-from mesokit.geometry.solids.bodies import BODY, NO_TERM, surface_velocity
+from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.method.spheres.common.contacts.geometry import from_wall, reach, row
 from mesokit.method.spheres.common.contacts.groups import Solid
 from mesokit.method.spheres.common.contacts.remembered import NO_SPRINGS, keep, kept
 from mesokit.method.spheres.common.contacts.solid import (
-    Place,
+    body_of,
     contact_with,
     forget_others,
-    lengthened,
-    place_at_solid,
-    shortened,
+    moves_at,
+    touched,
 )
 from mesokit.method.spheres.common.contacts.taken import take
 from mesokit.method.spheres.soft.engine.acting import act, beside, measure, measure_beside
 from mesokit.method.spheres.soft.engine.contact.force import (
-    NONE,
     Contact,
     answer,
     at_rest,
@@ -30,7 +28,6 @@ from mesokit.method.spheres.soft.engine.contact.sums import abs_sum, add, counte
 from mesokit.method.spheres.soft.engine.groups import ENERGY, LARGEST, TOUCHING
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
-from mesokit.scalar.pointer import whole, word
 
 
 @act.register(Contact)
@@ -113,25 +110,10 @@ def _(solid, law, i, world, readings):
 
 
 @scalar
-def touched(law, solid, bodies, i):
-    """The surfaces that sphere i touches, or is about to: three at most."""
-    r, within = row(bodies.place, i), reach(bodies, i) + law.ahead
-    nowhere = Place(within, NONE, NO_TERM)
-    first = place_at_solid(solid, r, within, NONE, NONE)
-    second, third = nowhere, nowhere
-    if first.term != NO_TERM:
-        second = place_at_solid(solid, r, within, first.normal, NONE)
-    if second.term != NO_TERM:
-        third = place_at_solid(solid, r, within, first.normal, second.normal)
-    return first, second, third
-
-
-@scalar
 def surface_at(solid, bodies, i, place):
     """The surface at a place beside sphere i, and the number of its body."""
-    tables, r = solid.bodies.tables, row(bodies.place, i)
-    moves = lengthened(surface_velocity(tables, place.term, shortened(r, solid.pattern)))
-    body = whole(word(tables, BODY), place.term)
+    body = body_of(solid, place.term)
+    moves = moves_at(solid, row(bodies.place, i), place.term)
     return surface(place.distance, place.normal, moves, solid.own, body), body
 
 
@@ -139,7 +121,7 @@ def surface_at(solid, bodies, i, place):
 def _(solid, law, i, step, world, room):
     bodies, largest = world.bodies, 0.0
     # Terms at the places of t + dt. A contact that ends frees the memory of its springs first.
-    places = touched(law, solid, bodies, i)
+    places = touched(solid, row(bodies.place, i), reach(bodies, i) + law.ahead)
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
         if place.term != NO_TERM:
@@ -153,7 +135,8 @@ def _(solid, law, i, step, world, room):
 
 @measure_beside.register(Solid)
 def _(solid, law, i, world, readings):
-    for place in touched(law, solid, world.bodies, i):
+    bodies = world.bodies
+    for place in touched(solid, row(bodies.place, i), reach(bodies, i) + law.ahead):
         if place.term != NO_TERM and place.distance < reach(world.bodies, i):
             there, _ = surface_at(solid, world.bodies, i, place)
             touch = at_wall(0.0, body(world.bodies, world.bodies.velocity, i), there)

@@ -1,0 +1,1 @@
+"""Rigid disks and spheres with friction, by contact dynamics."""

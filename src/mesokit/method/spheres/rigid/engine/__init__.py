@@ -1,0 +1,1 @@
+"""The engine of rigid grains: contacts, their order, sweeps, and the step."""

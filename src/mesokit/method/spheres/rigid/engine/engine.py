@@ -1,0 +1,95 @@
+"""The engine of rigid grains, for a simulation and its observables."""
+
+from collections.abc import Collection, Sequence
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.case import Case
+from mesokit.errors import RunError
+from mesokit.method.spheres.common.engine import SphereEngine
+from mesokit.method.spheres.common.walls import surfaces_of
+from mesokit.method.spheres.rigid.engine.groups import SPIN
+from mesokit.method.spheres.rigid.engine.system import RigidSystem
+from mesokit.method.spheres.rigid.scales import timestep_of
+from mesokit.method.spheres.rigid.setup import setup_of
+from mesokit.seam.engine import Array, Integers, State
+
+
+class RigidEngine(SphereEngine):
+    """Engine of rigid grains (`mesokit.seam.engine.Engine`) on the threads of one machine."""
+
+    system: RigidSystem
+
+    def __init__(self, case: Case, threads: int = 1, measures: Sequence[str] = ()) -> None:
+        super().__init__(case)
+        self.timestep, self.threads = timestep_of(case), threads
+        self.system, self.surfaces = self._system(), surfaces_of(case)
+        self.seconds = {"steps": 0.0}
+
+    def _system(self) -> RigidSystem:
+        return RigidSystem(setup_of(self.case, self.made), self.threads)
+
+    def advance(self, steps: int, measure: Collection[str] = ()) -> None:
+        """Run some steps. Raises RunError for grains too fast for the timestep."""
+        began = perf_counter()
+        self.system.run(self.step, steps)
+        self.step += steps
+        self.seconds["steps"] += perf_counter() - began
+
+    def check(self) -> None:
+        """Raise RunError if a velocity or a place is not finite."""
+        bodies = self.system.bodies
+        if not (np.isfinite(bodies.motion).all() and np.isfinite(bodies.place).all()):
+            raise RunError("velocities are no numbers any more; expected a shorter timestep")
+
+    def end_warmup(self) -> None:
+        """Set the momentum that walls have taken, and the energy lost, to zero."""
+        self.system.forget_sums()
+
+    def restore(self, state: State) -> None:
+        """Continue from a state."""
+        self.system.made_at = int(state["step"]) * self.timestep
+        super().restore(state)
+
+    # --- readings of observables ----------------------------------------------------------------
+
+    def _rows(self, name: str, ids: Integers | None, columns: slice) -> NDArray[Any]:
+        rows = self.system.by_number(getattr(self.system.bodies, name)[:, columns])
+        return rows if ids is None else rows[ids]
+
+    def positions(self, ids: Integers | None = None, unwrapped: bool = False) -> Array:
+        places = self._rows("place", ids, slice(self.dimension))
+        return places + self.images(ids) * self.box if unwrapped else places
+
+    def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
+        return self._rows("images", ids, slice(self.dimension))
+
+    def velocities(self, ids: Integers | None = None) -> Array:
+        return self._rows("motion", ids, slice(self.dimension))
+
+    def spins(self, ids: Integers | None = None) -> Array:
+        d = self.dimension
+        found = self._rows("motion", ids, slice(SPIN[d], SPIN[d] + (1 if d == 2 else 3)))
+        spins = found / (0.5 * self.diameters(ids))[:, None]
+        return spins[:, 0] if d == 2 else spins
+
+    def potential_energy(self) -> float:
+        return 0.0
+
+    @property
+    def wall_impulse(self) -> Array:
+        """Momentum that each surface has taken since the warm-up, (surfaces, d)."""
+        number, places = self.surfaces
+        taken = np.zeros((number, self.dimension))
+        np.add.at(taken, places, self.system.taken()[:, : self.dimension])
+        return taken
+
+    @property
+    def lost(self) -> dict[str, float]:
+        """Energy that contacts have taken since the warm-up, by what took it."""
+        return dict(
+            zip(("impact", "friction", "rolling"), map(float, self.system.lost()), strict=True)
+        )

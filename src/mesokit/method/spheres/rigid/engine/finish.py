@@ -1,0 +1,229 @@
+"""The end of a step: impulses are remembered, walls and losses counted, and grains moved."""
+
+import numpy as np
+
+from mesokit.geometry.protocol import Nothing
+from mesokit.loops.layout import share
+from mesokit.loops.threads import barrier
+from mesokit.method.spheres.common.contacts.groups import Solid
+from mesokit.method.spheres.common.contacts.remembered import Springs, keep, kept
+from mesokit.method.spheres.common.contacts.solid import MOST, body_of
+from mesokit.method.spheres.common.contacts.taken import take
+from mesokit.method.spheres.common.walls import entries
+from mesokit.method.spheres.rigid.engine.find import (
+    GAP,
+    KINDS,
+    ONE,
+    OTHER,
+    PAIR,
+    PULL,
+    ROW,
+    TORQUE,
+    alongside,
+    spin_at,
+    write,
+)
+from mesokit.method.spheres.rigid.engine.groups import DRAG, INVERSE, MOST_COLOURS, PUSH
+from mesokit.method.spheres.rigid.engine.sliding import across
+from mesokit.method.spheres.rigid.engine.sweep import pair_of, part_of, relative
+from mesokit.method.spheres.rigid.law.frame import impulse, parts, sliding
+from mesokit.scalar.fixed_point import quanta
+from mesokit.scalar.jit import by_type, generic, scalar
+from mesokit.scalar.vector import added, added_scaled, dot, first, outer, scaled
+
+IMPACT, FRICTION, ROLLING = range(3)  # energy that contacts take, in the last row of `taken`
+
+
+@by_type
+def in_space(vector):
+    """A vector of three, of one of two, or of the one component of a spin in 2D."""
+    if len(vector) == 1:
+        return lambda vector: (0.0, 0.0, vector[0])
+    if len(vector) == 2:
+        return lambda vector: (vector[0], vector[1], 0.0)
+    return lambda vector: vector
+
+
+@scalar
+def bring(worker, world, found, order, count):
+    """Copy the contacts that this thread has found to their places in the order of sweeps, with
+    the impulses of the last step."""
+    most, flat = len(found.slot) // worker.threads, world.flat
+    d, start = len(flat), worker.thread * most
+    for f in range(start, start + count):
+        c = order.at[f]
+        for k in range(2):
+            order.pair[c, k], order.beside[c, k] = np.int32(found.pair[f, k]), found.beside[f, k]
+        order.slot[c] = found.slot[f]
+        for k in range(found.contact.shape[1]):
+            order.contact[c, k] = found.contact[f, k]
+        for k in range(found.roll.shape[1] if len(found.roll) > 0 else 0):
+            order.roll[c, k] = found.roll[f, k]
+        springs, s = memory_of(world, found.slot[f])
+        last, normal = kept(springs, s), entries(found.contact, f, 0, flat)
+        push, drag = parts(normal, first(last.sliding, flat))
+        order.contact[c, d + PUSH] = max(push, 0.0)
+        write(order.contact, c, d + DRAG, drag)
+        if len(found.roll) > 0:
+            write(order.roll, c, TORQUE, untwisted(normal, last.rolling))
+
+
+@by_type
+def untwisted(normal, rolling):
+    """The angular impulse of which `twisted` is remembered."""
+    if len(normal) == 2:
+        return lambda normal, rolling: (normal[0] * rolling[1] - normal[1] * rolling[0],)
+    return lambda normal, rolling: scaled(-1.0, outer(normal, rolling))
+
+
+@by_type
+def twisted(normal, torque):
+    """The normal times the angular impulse: the same as seen from both grains."""
+    if len(normal) == 2:
+        return lambda normal, torque: (-normal[1] * torque[0], normal[0] * torque[0], 0.0)
+    return lambda normal, torque: outer(normal, torque)
+
+
+@scalar
+def memory_of(world, slot):
+    """Where the impulse of a contact is remembered: an array and a row of it."""
+    s, kind = slot // KINDS, slot % KINDS
+    if kind == PAIR:
+        return world.lists.springs, s
+    if kind == ROW:
+        return world.walls.springs, s
+    return springs_beside(world.walls.solid, world.walls.springs), s
+
+
+@generic
+def springs_beside(solid, springs):
+    """What contacts with walls of any shape remember; `springs` if there are none."""
+
+
+springs_beside.register(Nothing)(lambda solid, springs: springs)
+springs_beside.register(Solid)(lambda solid, springs: solid.springs)
+
+
+@generic
+def body_beside(solid, s):
+    """Number of the body of the contact number s with walls of any shape."""
+
+
+body_beside.register(Nothing)(lambda solid, s: 0)
+body_beside.register(Solid)(lambda solid, s: body_of(solid, solid.terms[s // MOST, s % MOST]))
+
+
+@scalar
+def finish(worker, law, step, world, order, total, taken):
+    """Remember the impulses of the contacts, and count what walls take and what energy is lost."""
+    d, flat, contact = len(world.flat), world.flat, order.contact
+    first_contact, last = share(total, worker.thread, worker.threads)
+    for c in range(np.uint64(first_contact), np.uint64(last)):
+        i, j = pair_of(order, c)
+        normal = entries(contact, c, 0, flat)
+        push, drag = contact[c, d + PUSH], entries(contact, c, d + DRAG, alongside(flat))
+        springs, s = memory_of(world, order.slot[c])
+        rolling = (0.0, 0.0, 0.0)
+        if law.rolling > 0.0:
+            rolling = twisted(normal, entries(order.roll, c, TORQUE, alongside(flat)))
+        keep(springs, s, Springs(in_space(impulse(normal, push, drag)), rolling))
+        pushed = push - order.beside[c, PULL]
+        count_losses(law, world, order, c, i, j, normal, pushed, drag, taken)
+        kind = order.slot[c] % KINDS
+        if kind != PAIR:
+            rows = len(world.walls.rows)
+            w = s % rows if kind == ROW else rows + body_beside(world.walls.solid, s)
+            whole = in_space(impulse(normal, pushed, drag))
+            take(taken, w, counted(whole, law.scale))
+
+
+@scalar
+def counted(vector, scale):
+    """A vector in whole quanta."""
+    return quanta(vector[0], scale), quanta(vector[1], scale), quanta(vector[2], scale)
+
+
+@scalar
+def count_losses(law, world, order, c, i, j, normal, push, drag, taken):
+    """Count the energy that a contact takes: minus its impulse times the mean of the velocities at
+    the start and at the end of the step."""
+    flat, contact = world.flat, order.contact
+    now = relative(world.motion, contact, c, i, j, normal)
+    then = relative(world.before, contact, c, i, j, normal)
+    velocity, rolled = scaled(0.5, added(now[0], then[0])), scaled(0.5, added(now[1], then[1]))
+    impact = -push * dot(normal, velocity)
+    friction, rolling = -dot(drag, sliding(normal, velocity, rolled)), 0.0
+    if law.rolling > 0.0:
+        along, spin = alongside(flat), spin_at(flat)
+        one, other = order.roll[c, ONE], order.roll[c, OTHER]
+        torque = entries(order.roll, c, TORQUE, along)
+        turned = scaled(0.0, along)
+        for motion in (world.motion, world.before):
+            turned = added_scaled(turned, 0.5 * one, entries(motion, i, spin, along))
+            turned = added_scaled(turned, -0.5 * other, entries(motion, j, spin, along))
+        rolling = -dot(torque, turned)
+    take(taken, len(taken) - 1, counted((-impact, -friction, -rolling), law.energy_scale))
+
+
+@scalar
+def push_back(worker, law, world, order, total):
+    """Move grains that overlap apart, by a share of their overlap, as if each had no neighbours."""
+    place, motion, flat = world.bodies.place, world.motion, world.flat
+    n = len(world.bodies.number)
+    for k in range(MOST_COLOURS + 1):
+        low, high = order.colours[k], order.colours[k + 1]
+        if low < high:
+            low, high = part_of(worker, k, low, high)
+            for c in range(np.uint64(low), np.uint64(high)):
+                i, j = pair_of(order, c)
+                if order.beside[c, GAP] < 0.0:
+                    both = motion[i, INVERSE] + motion[j, INVERSE]
+                    depth = -law.push_back * order.beside[c, GAP] / both
+                    normal = entries(order.contact, c, 0, flat)
+                    shift = depth * motion[i, INVERSE]
+                    write(place, i, 0, added_scaled(entries(place, i, 0, flat), shift, normal))
+                    if j < np.uint64(n):
+                        shift = -depth * motion[j, INVERSE]
+                        write(place, j, 0, added_scaled(entries(place, j, 0, flat), shift, normal))
+            barrier(worker)
+
+
+@scalar
+def kick(motion, bodies, before, i, flat):
+    """Remember the velocities at the start of the step, and add a step of gravity (v: t, freely to
+    t + dt)."""
+    for k in range(before.shape[1]):
+        before[i, k] = bodies.motion[i, k]
+    for k in range(len(flat)):
+        bodies.motion[i, k] += motion.step * motion.gravity[k]
+
+
+@scalar
+def fly(step, bodies, box, i, flat):
+    """Move a grain by its new velocity (r: t -> t + dt), and back into the box."""
+    for k in range(len(flat)):
+        x = bodies.place[i, k] + step * bodies.motion[i, k]
+        if box.inverse[k] != 0.0 and (x < 0.0 or x >= box.size[k]):
+            boxes = np.int32(1) if x >= box.size[k] else np.int32(-1)
+            x -= float(boxes) * box.size[k]
+            x = x if 0.0 <= x < box.size[k] else 0.0
+            bodies.images[i, k] += boxes
+            if k == 1:
+                shift, speed = across(box, float(boxes), step)
+                fold_x(bodies, box, i, shift)
+                bodies.motion[i, 0] += speed
+        bodies.place[i, k] = x
+
+
+@scalar
+def fold_x(bodies, box, i, shift):
+    """Move a grain along x, and back into the box."""
+    if shift != 0.0:
+        x = bodies.place[i, 0] + shift
+        while x < 0.0:
+            x += box.size[0]
+            bodies.images[i, 0] -= np.int32(1)
+        while x >= box.size[0]:
+            x -= box.size[0]
+            bodies.images[i, 0] += np.int32(1)
+        bodies.place[i, 0] = x

@@ -1,0 +1,1 @@
+"""The law of a contact of rigid grains, one idea a file."""

@@ -1,0 +1,25 @@
+"""The record of rigid grains for the rest of the package."""
+
+from mesokit.method.spheres.common.expected.neighbours import NeighboursOfSpheres
+from mesokit.method.spheres.common.method import log_columns, sphere_method
+from mesokit.method.spheres.common.motion import SphereDisplacement, VelocityMemory
+from mesokit.method.spheres.rigid.checks import check_rigid
+from mesokit.method.spheres.rigid.engine.engine import RigidEngine
+from mesokit.method.spheres.rigid.scales import timestep_of
+from mesokit.method.spheres.rigid.section import RigidSections
+from mesokit.method.spheres.rigid.summary import rigid_summary
+
+ENERGIES = ("translation", "rotation", "potential", "contact")
+METHOD = sphere_method(
+    RigidEngine,
+    lambda case: None,
+    (SphereDisplacement, NeighboursOfSpheres, VelocityMemory),
+    name="contact-dynamics",
+    sections=RigidSections,
+    observables=(),
+    check=check_rigid,
+    timestep=timestep_of,
+    summary=rigid_summary,
+    box=("shear_rate", "shear_frequency", "shear"),
+    log=log_columns(*ENERGIES, usual=("translation", "potential")),
+)
