@@ -44,7 +44,7 @@ def beverloo_rate(
     G. T. Houlsby, Chem. Eng. Sci. 37, 1597 (1982).
 
     >>> beverloo_rate([1.0, 5.0, 10.0], 1.0, 0.6, 1.0, 3).round(4).tolist()
-    [0.0, 8.5571, 75.4783]
+    [0.0, 8.5573, 75.4789]
     """
     none_negative(opening=opening)
     positive(diameter=diameter, density=density, gravity=gravity)
@@ -64,7 +64,7 @@ def beverloo_line(rate: ArrayLike, dimension: int) -> NDArray[np.float64]:
 
     >>> rates = beverloo_rate([5.0, 6.0, 7.0], 1.0, 0.6, 1.0, 3)
     >>> np.diff(beverloo_line(rates, 3)).round(6).tolist()
-    [0.655623, 0.655623]
+    [0.655589, 0.655589]
     """
     none_negative(rate=rate)
     dimension_two_or_three(dimension)

@@ -81,7 +81,7 @@ def friction_of_spheres(
     Y. Forterre and O. Pouliquen, Nature 441, 727 (2006).
 
     >>> friction_of_spheres([0.0, 0.279, 1e9]).round(4).tolist()
-    [0.3819, 0.5126, 0.6434]
+    [0.3819, 0.5127, 0.6435]
     """
     none_negative(inertial=inertial, static=static, dynamic=dynamic)
     positive(scale=scale)

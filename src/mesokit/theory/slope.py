@@ -43,9 +43,7 @@ def down_slope(angle: float, friction: float, gravity: float, kappa: float) -> R
         rolling = gravity * math.sin(angle) / (1 + kappa)
         return Rolling(rolling, True, rolling)
     normal = gravity * math.cos(angle)
-    return Rolling(
-        gravity * math.sin(angle) - friction * normal, False, friction * normal / kappa
-    )
+    return Rolling(gravity * math.sin(angle) - friction * normal, False, friction * normal / kappa)
 
 
 class EndOfSliding(NamedTuple):

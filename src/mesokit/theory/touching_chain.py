@@ -11,11 +11,11 @@ def touching_chain(
 ) -> NDArray[np.float64]:
     """Velocities of grains in a row, all touching, after all contacts have acted at once.
 
-    Impulses push only, no contact closes faster than -e times the speed at which it closed before,
-    and a contact that opens faster has no impulse (Moreau 1988): a linear complementarity problem,
-    solved exactly. Of N equal grains at rest that one hits at speed 1, it becomes (1 + e)/N - e and
-    all others (1 + e)/N: at e = 1, -(N - 2)/N and 2/N. Energy is conserved at e = 1. Real balls
-    collide one pair after the other, and only the last flies off: a known artefact of this law.
+    Impulses push only, a contact opens at least e times as fast as it closed before, and one that
+    opens faster has no impulse (Moreau 1988): a linear complementarity problem, solved exactly. Of
+    N equal grains at rest that one hits at speed 1, it becomes (1 + e)/N - e and all others
+    (1 + e)/N: at e = 1, -(N - 2)/N and 2/N. Energy is conserved at e = 1. Real balls collide one
+    pair after the other, and only the last flies off: a known artefact of this law.
 
     Parameters: `velocity` (N,) before, from left to right; `restitution` e from 0 to 1; `mass` of
     each grain, None for equal ones. Raises ValueError for numbers out of range. Source:
