@@ -26,9 +26,8 @@ def run_out(
     | slot | 1.2 a | 1.9 a^(2/3) from 2.3 | sand, rice, sugar; Lube et al. 2005 |
     | cylinder | 1.24 a | 1.6 a^(1/2) from 1.7 | the same in 3D, Lube et al. 2004 |
 
-    Fits of measurements, within some 10 %; both forms differ by 6, 20 and 1 % where they meet.
-    Glass beads in a slot run farther, some 1.8 a (Lajeunesse, Monnier and Homsy 2005). Friction
-    between grains hardly matters above 0.3 or so; without it grains do not stop.
+    Approximate: fits of measurements; both forms differ by 6, 20 and 1 % where they meet. Glass
+    beads in a slot run farther, some 1.8 a (Lajeunesse, Monnier and Homsy 2005).
 
     Parameters: `ratio` a of the height to the length L_0 of the column at rest, which spreads to
     one side from a wall or evenly to both (L_0 is then half its width), or to the radius of a
