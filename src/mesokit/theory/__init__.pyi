@@ -3,6 +3,10 @@
 from mesokit.theory.barometric import barometric_cdf as barometric_cdf
 from mesokit.theory.barometric import barometric_mean as barometric_mean
 from mesokit.theory.bead_diffusion import bead_diffusion as bead_diffusion
+from mesokit.theory.beverloo import BeverlooFit as BeverlooFit
+from mesokit.theory.beverloo import beverloo_fit as beverloo_fit
+from mesokit.theory.beverloo import beverloo_line as beverloo_line
+from mesokit.theory.beverloo import beverloo_rate as beverloo_rate
 from mesokit.theory.bond_correlation import BondCorrelation as BondCorrelation
 from mesokit.theory.bond_correlation import bond_correlation as bond_correlation
 from mesokit.theory.chain_diffusion import kirkwood_diffusion as kirkwood_diffusion
@@ -22,6 +26,7 @@ from mesokit.theory.chain_size import mean_square_gyration as mean_square_gyrati
 from mesokit.theory.channel_cylinder import Reference as Reference
 from mesokit.theory.channel_cylinder import channel_cylinder as channel_cylinder
 from mesokit.theory.channel_cylinder import square_wake_length as square_wake_length
+from mesokit.theory.column_collapse import run_out as run_out
 from mesokit.theory.contact import hertz_contact as hertz_contact
 from mesokit.theory.contact import spring_dashpot as spring_dashpot
 from mesokit.theory.couette import couette_velocity as couette_velocity
@@ -55,6 +60,10 @@ from mesokit.theory.gamma import cell_energy_variance as cell_energy_variance
 from mesokit.theory.gaussian_structure_factor import (
     gaussian_structure_factor as gaussian_structure_factor,
 )
+from mesokit.theory.granular_flow import fraction_of_disks as fraction_of_disks
+from mesokit.theory.granular_flow import friction_of_disks as friction_of_disks
+from mesokit.theory.granular_flow import friction_of_spheres as friction_of_spheres
+from mesokit.theory.granular_flow import inertial_number as inertial_number
 from mesokit.theory.granular_temperature import haff_temperature as haff_temperature
 from mesokit.theory.granular_temperature import haff_time as haff_time
 from mesokit.theory.granular_temperature import kicked_temperature as kicked_temperature
@@ -98,6 +107,11 @@ from mesokit.theory.ising import potts_critical_energy as potts_critical_energy
 from mesokit.theory.ising import row_correlation as row_correlation
 from mesokit.theory.ising import spin_correlation_length as spin_correlation_length
 from mesokit.theory.ising import yang_magnetisation as yang_magnetisation
+from mesokit.theory.isostatic import isostatic_coordination as isostatic_coordination
+from mesokit.theory.janssen import janssen_length as janssen_length
+from mesokit.theory.janssen import janssen_share as janssen_share
+from mesokit.theory.janssen import janssen_stress as janssen_stress
+from mesokit.theory.janssen import stress_ratio as stress_ratio
 from mesokit.theory.kolmogorov import kolmogorov_onset_time as kolmogorov_onset_time
 from mesokit.theory.kolmogorov import kolmogorov_velocity as kolmogorov_velocity
 from mesokit.theory.kolmogorov import kolmogorov_viscosity as kolmogorov_viscosity
@@ -124,10 +138,14 @@ from mesokit.theory.origin import Origin as Origin
 from mesokit.theory.origin import origins as origins
 from mesokit.theory.oscillating_slit import oscillating_slit_response as oscillating_slit_response
 from mesokit.theory.oscillating_slit import oscillating_slit_velocity as oscillating_slit_velocity
+from mesokit.theory.parallel_update import largest_relaxation as largest_relaxation
+from mesokit.theory.parallel_update import parallel_factor as parallel_factor
 from mesokit.theory.passage_times import first_passage_cdf as first_passage_cdf
 from mesokit.theory.passage_times import mean_exit_time as mean_exit_time
 from mesokit.theory.persistent_walk import msd_persistent_walk as msd_persistent_walk
 from mesokit.theory.persistent_walk import persistent_diffusion as persistent_diffusion
+from mesokit.theory.pile import PileFriction as PileFriction
+from mesokit.theory.pile import pile_friction as pile_friction
 from mesokit.theory.ping_pong import bounce_height as bounce_height
 from mesokit.theory.ping_pong import bounce_path as bounce_path
 from mesokit.theory.ping_pong import bounce_time as bounce_time
@@ -147,6 +165,10 @@ from mesokit.theory.relaxation_modulus import complex_viscosity as complex_visco
 from mesokit.theory.relaxation_modulus import loss_modulus as loss_modulus
 from mesokit.theory.relaxation_modulus import relaxation_modulus as relaxation_modulus
 from mesokit.theory.relaxation_modulus import storage_modulus as storage_modulus
+from mesokit.theory.rigid_chain import ChainWave as ChainWave
+from mesokit.theory.rigid_chain import RigidChain as RigidChain
+from mesokit.theory.rigid_chain import rigid_chain as rigid_chain
+from mesokit.theory.rigid_chain import rigid_chain_wave as rigid_chain_wave
 from mesokit.theory.rouse_times import RouseTimes as RouseTimes
 from mesokit.theory.rouse_times import rouse_times as rouse_times
 from mesokit.theory.rouse_times import rouse_times_from_slowest as rouse_times_from_slowest
@@ -155,8 +177,11 @@ from mesokit.theory.slip_sphere import enskog_friction as enskog_friction
 from mesokit.theory.slip_sphere import slip_sphere_diffusion as slip_sphere_diffusion
 from mesokit.theory.slope import EndOfSliding as EndOfSliding
 from mesokit.theory.slope import Rolling as Rolling
+from mesokit.theory.slope import Thrown as Thrown
 from mesokit.theory.slope import down_slope as down_slope
 from mesokit.theory.slope import end_of_sliding as end_of_sliding
+from mesokit.theory.slope import slide_to_roll as slide_to_roll
+from mesokit.theory.soft_or_rigid import stiffness_of_equal_cost as stiffness_of_equal_cost
 from mesokit.theory.sonine import fourth_cumulant as fourth_cumulant
 from mesokit.theory.sonine import sonine_component_cdf as sonine_component_cdf
 from mesokit.theory.sonine import sonine_speed_cdf as sonine_speed_cdf
@@ -168,9 +193,16 @@ from mesokit.theory.stress_in_time import stress_in_time as stress_in_time
 from mesokit.theory.surface import ring_differences as ring_differences
 from mesokit.theory.surface import ring_width as ring_width
 from mesokit.theory.surface import solid_on_solid_steps as solid_on_solid_steps
+from mesokit.theory.sweeps import packing_sweeps as packing_sweeps
+from mesokit.theory.sweeps import slowest_wave as slowest_wave
+from mesokit.theory.sweeps import sweep_error as sweep_error
+from mesokit.theory.sweeps import sweep_factor as sweep_factor
+from mesokit.theory.sweeps import sweep_spread as sweep_spread
+from mesokit.theory.sweeps import sweeps_needed as sweeps_needed
 from mesokit.theory.taylor_couette import taylor_couette_coefficients as taylor_couette_coefficients
 from mesokit.theory.taylor_couette import taylor_couette_torque as taylor_couette_torque
 from mesokit.theory.taylor_couette import taylor_couette_velocity as taylor_couette_velocity
+from mesokit.theory.touching_chain import touching_chain as touching_chain
 from mesokit.theory.transport import Transport as Transport
 from mesokit.theory.transport import transport as transport
 from mesokit.theory.transverse_chain import TransversePoles as TransversePoles

@@ -3,6 +3,9 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 
 def positive(**values: float) -> None:
     """Raise ValueError unless every named value is a finite number above zero."""
@@ -35,3 +38,21 @@ def whole(least: int, **values: int) -> None:
     for name, value in values.items():
         if value != int(value) or value < least:
             raise ValueError(f"{name} = {value!r}: expected a whole number of {least} or more")
+
+
+def none_negative(**values: ArrayLike) -> None:
+    """Raise ValueError unless every number of every named array is finite, and 0 or more."""
+    for name, value in values.items():
+        given = np.atleast_1d(np.asarray(value, float))
+        wrong = given[~(np.isfinite(given) & (given >= 0))]
+        if wrong.size:
+            raise ValueError(f"{name} = {wrong[0]:g}: expected finite numbers of 0 or more")
+
+
+def all_positive(**values: ArrayLike) -> None:
+    """Raise ValueError unless every number of every named array is finite, and above 0."""
+    for name, value in values.items():
+        given = np.atleast_1d(np.asarray(value, float))
+        wrong = given[~(np.isfinite(given) & (given > 0))]
+        if wrong.size:
+            raise ValueError(f"{name} = {wrong[0]:g}: expected finite numbers above 0")
