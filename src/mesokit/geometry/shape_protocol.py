@@ -92,6 +92,12 @@ class Wall(ABC):
         kw_only=True,
         min_length=1,
     )
+    opens: float | None = option(
+        default=None,
+        doc="time at which it is taken away, the warm-up included (never unless said)",
+        kw_only=True,
+        gt=0,
+    )
 
     @property
     def closed_axes(self) -> tuple[Axis, ...]:

@@ -10,7 +10,7 @@ from mesokit.case.describe.hints import Either
 
 @component
 class SurfaceContact:
-    """Restitution, friction, temperature and vibration of a surface that spheres touch.
+    """Restitution, friction, temperature and motion of a surface that spheres touch.
 
     What is not said is as between two spheres.
     """
@@ -34,6 +34,33 @@ class SurfaceContact:
     amplitude: float = param(0.0, doc="it vibrates so far along its normal", unit="a", ge=0)
     frequency: float = param(
         0.0, doc="of the vibration, in radians per time", unit="1/time", ge=0, le=1e9
+    )
+    speed: float = param(
+        0.0,
+        doc="a plate moves so fast along its normal, into the box",
+        unit="length/time",
+        ge=-1e6,
+        le=1e6,
+    )
+    travel: float | None = param(
+        None, doc="how far it moves at that speed (on and on unless said)", unit="length", gt=0
+    )
+    force: float | None = param(
+        None,
+        doc="a plate is pushed into the box by this force, and moves as grains let it",
+        unit="mass length/time^2",
+        gt=0,
+        le=1e12,
+    )
+    pressure: float | None = param(
+        None,
+        doc="the same by a force per area between the plates across it",
+        unit="mass length^(2-d)/time^2",
+        gt=0,
+        le=1e12,
+    )
+    mass: float | None = param(
+        None, doc="of a plate that is pushed (that of all grains unless said)", unit="mass", gt=0
     )
 
 

@@ -12,20 +12,25 @@ from mesokit.geometry.solids.solids import Solids, labels, solids_of
 from mesokit.geometry.surface import Surface, SurfaceContact
 
 VIBRATION = ("amplitude", "frequency")
-CONTACT = ("temperature", "tangential", "restitution", "friction", *VIBRATION)
+MOTION, PUSHED = ("speed", "travel"), ("force", "pressure", "mass")
+CONTACT = (
+    "temperature", "tangential", "restitution", "friction", *VIBRATION, *MOTION, *PUSHED
+)  # fmt: skip
 
 
 class Walls(NamedTuple):
     """Keys of walls, beside their shapes, that a method takes; all others are refused.
 
     rules: of surfaces. moving, turning: whether surfaces may have a velocity and a rotation.
-    virtual: whether virtual particles fill solids. contact: keys of `surface.contact`.
+    virtual: whether virtual particles fill solids. opens: whether walls may be taken away. contact:
+    keys of `surface.contact`.
     """
 
     rules: tuple[str, ...] = ("no-slip", "slip")
     moving: bool = False
     turning: bool = False
     virtual: bool = False
+    opens: bool = False
     contact: tuple[str, ...] = ()
 
     def problems(self, case: Case) -> Iterator[str]:
@@ -34,8 +39,10 @@ class Walls(NamedTuple):
         for i, wall in enumerate(case.walls):
             if wall.virtual != "extrapolate" and not self.virtual:
                 yield _not_taken(f"wall[#{i + 1}].virtual", wall.virtual, case)
+            if wall.opens is not None and not self.opens:
+                yield _not_taken(f"wall[#{i + 1}].opens", wall.opens, case)
         for key, surface, wall in surfaces(case):
-            yield from self._surface(key, surface, case)
+            yield from self._surface(key, surface, case, wall)
             if isinstance(wall, Plates):
                 if surface.rotation is not None:
                     yield f"{key}.rotation = {show(surface.rotation)}: a plate does not turn"
@@ -46,7 +53,7 @@ class Walls(NamedTuple):
                         f"moves only along itself; expected 0 for {wall.axis}"
                     )
 
-    def _surface(self, key: str, surface: Surface, case: Case) -> Iterator[str]:
+    def _surface(self, key: str, surface: Surface, case: Case, wall: Any) -> Iterator[str]:
         if surface.rule not in self.rules:
             yield (
                 f"{key}.rule = {show(surface.rule)}: not with method {show(case.run.method)}; "
@@ -74,6 +81,25 @@ class Walls(NamedTuple):
                     f"{key}.contact.{here} = {show(given)}: a vibration has an amplitude and a "
                     f"frequency; expected {key}.contact.{other} as well"
                 )
+        yield from _motion(key, contact, wall)
+
+
+def _motion(key: str, contact: SurfaceContact, wall: Any) -> Iterator[str]:
+    """Faults of the motion of a plate along its normal."""
+    moved = [name for name in ("speed", "force", "pressure") if getattr(contact, name)]
+    if moved and not isinstance(wall, Plates):
+        value = getattr(contact, moved[0])
+        yield f"{key}.contact.{moved[0]} = {show(value)}: only plates move along their normal"
+    if moved and (contact.amplitude or len(moved) > 1):
+        other = "amplitude" if contact.amplitude else moved[1]
+        yield f"{key}.contact.{moved[0]}: not with {key}.contact.{other}; expected one of both"
+    if contact.travel is not None and not contact.speed:
+        yield f"{key}.contact.travel = {show(contact.travel)}: expected {key}.contact.speed as well"
+    if contact.mass is not None and contact.force is None and contact.pressure is None:
+        yield (
+            f"{key}.contact.mass = {show(contact.mass)}: expected {key}.contact.force or "
+            f"{key}.contact.pressure as well"
+        )
 
 
 def surfaces(case: Case) -> Iterator[tuple[str, Surface, Any]]:

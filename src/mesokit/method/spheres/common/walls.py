@@ -21,9 +21,10 @@ from mesokit.seam.engine import Array
 from mesokit.seam.method import Plate
 
 # columns: kind, place of three, unit vector of three (normal of a plane, axis of a cylinder),
-# radius, velocity of three, amplitude, frequency, phase at the start of the window
+# radius, velocity of three, amplitude, frequency, phase at the start of the window, speed of a
+# plate along its normal, and how far it goes
 KIND, PLACE, AXIS, ROUND, MOVES = 0, 1, 4, 7, 8
-AMPLITUDE, FREQUENCY, PHASE, COLUMNS = 11, 12, 13, 14
+AMPLITUDE, FREQUENCY, PHASE, SPEED, TRAVEL, COLUMNS = 11, 12, 13, 14, 15, 16
 PLANE, OUTSIDE, INSIDE = 0.0, 1.0, -1.0  # kinds: a plane; fluid outside or inside of a round wall
 ROUND_KINDS = ("ball", "rod")
 ALLOWED = "expected plates, or something round, or a rectangle or cuboid with fluid = 'inside'"
@@ -41,6 +42,18 @@ def vibration(walls, w, time):
         amplitude * frequency * math.cos(phase),
         amplitude * frequency * frequency,
     )
+
+
+@scalar
+def displaced(walls, w, time):
+    """Displacement and velocity along the normal of a plate that vibrates or moves."""
+    shift, speed, _ = vibration(walls, w, time)
+    path = walls[w, SPEED] * time
+    if walls[w, SPEED] == 0.0:
+        return shift, speed
+    if abs(path) >= walls[w, TRAVEL]:
+        return math.copysign(walls[w, TRAVEL], path), 0.0
+    return path, walls[w, SPEED]
 
 
 @elementwise
@@ -64,7 +77,7 @@ def outward(walls, w, box, r):
 
 
 class SurfaceRows(NamedTuple):
-    """rows (walls, 14); surfaces: number of the wall and surface of each row; surface (walls,):
+    """rows (walls, 16); surfaces: number of the wall and surface of each row; surface (walls,):
     number of the body of each row; names of the bodies."""
 
     rows: Array
@@ -139,12 +152,18 @@ def surfaces_of(case: Case) -> tuple[int, NDArray[np.int64]]:
     return len(bodies), np.concatenate([rank[rows.surface], rank[len(walls) :]])
 
 
+def opening(case: Case, i: int) -> float:
+    """The time at which wall number i is taken away, infinite for others."""
+    opens = case.walls[i].opens
+    return math.inf if opens is None else float(opens)
+
+
 def moving_plates(case: Case, time: float) -> tuple[Plate, ...]:
-    """Plates that vibrate, displaced as at a time."""
+    """Plates that vibrate or move into the box, displaced as at a time."""
     rows, d = surface_rows(case, other_walls(case)).rows, case.box.dimension
     return tuple(
-        Plate(rows[w, PLACE : PLACE + d], rows[w, AXIS : AXIS + d], vibration(rows, w, time)[0])
-        for w in np.flatnonzero(rows[:, AMPLITUDE] > 0)
+        Plate(rows[w, PLACE : PLACE + d], rows[w, AXIS : AXIS + d], displaced(rows, w, time)[0])
+        for w in np.flatnonzero((rows[:, AMPLITUDE] > 0) | (rows[:, SPEED] != 0))
     )
 
 
@@ -235,4 +254,6 @@ def _row(part: Part, surface: Surface, dimension: int) -> Array:
     if surface.contact is not None:
         row[AMPLITUDE] = surface.contact.amplitude
         row[FREQUENCY] = surface.contact.frequency
+        row[SPEED] = surface.contact.speed
+        row[TRAVEL] = math.inf if surface.contact.travel is None else surface.contact.travel
     return row

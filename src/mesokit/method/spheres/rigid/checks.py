@@ -13,7 +13,10 @@ from mesokit.method.spheres.common.checks import (
 )
 
 WALLS = walls.Walls(
-    moving=True, turning=True, contact=("restitution", "friction", "amplitude", "frequency")
+    moving=True,
+    turning=True,
+    opens=True,
+    contact=("restitution", "friction", *walls.VIBRATION, *walls.MOTION, *walls.PUSHED),
 )
 
 

@@ -36,6 +36,7 @@ def speed_of_walls(case: Case) -> float:
         turning, contact = surface.rotation or 0.0, surface.contact
         rate = math.hypot(*(turning if isinstance(turning, tuple) else (turning,)))
         shaken = 0.0 if contact is None else contact.amplitude * contact.frequency
+        shaken += 0.0 if contact is None else abs(contact.speed)
         speeds.append(math.hypot(*(surface.velocity or (0.0,))) + rate * farthest + shaken)
     return max(speeds)
 

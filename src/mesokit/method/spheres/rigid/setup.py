@@ -12,7 +12,7 @@ from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common.contacts.groups import IN_ALL
 from mesokit.method.spheres.common.contacts.listed import Listed, Others
 from mesokit.method.spheres.common.made import INERTIA, Made
-from mesokit.method.spheres.common.walls import other_walls, room_of, surface_rows
+from mesokit.method.spheres.common.walls import opening, other_walls, room_of, surface_rows
 from mesokit.method.spheres.rigid import scales
 from mesokit.method.spheres.rigid.engine.groups import Law, Motion
 from mesokit.method.spheres.rigid.engine.sliding import AtRest, Sliding
@@ -23,14 +23,15 @@ FINE = 2.0**40  # quanta in a usual impulse and in a usual energy
 
 
 class RigidSetup(NamedTuple):
-    """Parameters of a system of rigid grains: lists; masses, inertia (n,); law, solver, motion;
-    shear of the box; seed."""
+    """Parameters of a system of rigid grains: lists; masses, inertia (n,); law, solver; drive of
+    plates, see `Plates`; motion; shear of the box; seed."""
 
     listed: Listed
     masses: Array
     inertia: Array
     law: Law
     solver: Sweeping
+    drive: Array
     motion: Motion
     shear: Any
     seed: int
@@ -40,7 +41,7 @@ def setup_of(case: Case, made: Made) -> RigidSetup:
     """All parameters of a run."""
     section, box, contact = case.spheres, case.box, case.spheres.contact
     walls, history = surface_rows(case, other_walls(case)), box.history
-    own = np.array([_own(case, s) for _, s in walls.surfaces], float).reshape(-1, 2)
+    own = np.array([_own(case, i, s) for i, s in walls.surfaces], float).reshape(-1, 3)
     listed = Listed(
         tuple(float(length) for length in box.size),
         tuple(room_of(case).closed),
@@ -61,6 +62,7 @@ def setup_of(case: Case, made: Made) -> RigidSetup:
         made.inertia,
         _law(case, float(bounces)),
         section.solver.kernel(),
+        np.array([_drive(case, made, s) for _, s in walls.surfaces], float).reshape(-1, 3),
         Motion(
             scales.timestep_of(case),
             tuple(map(float, section.gravity or (0.0,) * box.dimension)),
@@ -105,16 +107,28 @@ def _others(case: Case, made: Made) -> Others | None:
     solids = Solids(case.walls, case.box, only=which)
     skin = case.spheres.skin_of(case.box, closed_axes(case.walls))
     away = float(made.diameters.max()) / 2 + skin
-    own = np.array([_own(case, body.surface) for body in solids.bodies])
+    pairs = zip(solids.walls, solids.bodies, strict=True)
+    own = np.array([_own(case, i, body.surface) for i, body in pairs])
     return Others(solids.reaching(away), solids.pattern, own, solids)
 
 
-def _own(case: Case, surface: Surface) -> tuple[float, float]:
-    """Friction and restitution of a surface."""
+def _drive(case: Case, made: Made, surface: Surface) -> tuple[float, float, float]:
+    """Inverse mass of a plate that is pushed, 0 of others, its force and its pressure."""
+    contact = surface.contact
+    if contact is None or (contact.force is None and contact.pressure is None):
+        return 0.0, 0.0, 0.0
+    mass = float(made.masses.sum()) if contact.mass is None else contact.mass
+    return 1 / mass, contact.force or 0.0, contact.pressure or 0.0
+
+
+def _own(case: Case, i: int, surface: Surface) -> tuple[float, float, float]:
+    """Friction and restitution of a surface of wall number i, and the time at which it is taken
+    away."""
     contact, law = surface.contact, case.spheres.contact
     restitution = None if contact is None else contact.restitution
     friction = None if contact is None else contact.friction
     return (
         0.0 if surface.rule == "slip" else law.friction if friction is None else friction,
         law.restitution if restitution is None else restitution,
+        opening(case, i),
     )

@@ -19,7 +19,10 @@ from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 
 ROUNDING = 1e-5  # relative, of diameters as people write them
 WALLS = walls.Walls(
-    moving=True, turning=True, contact=("restitution", "friction", "amplitude", "frequency")
+    moving=True,
+    turning=True,
+    opens=True,
+    contact=("restitution", "friction", *walls.VIBRATION, *walls.MOTION),
 )
 
 

@@ -11,7 +11,7 @@ from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common.contacts.listed import Others
 from mesokit.method.spheres.common.made import Made
-from mesokit.method.spheres.common.walls import other_walls, room_of, surface_rows
+from mesokit.method.spheres.common.walls import opening, other_walls, room_of, surface_rows
 from mesokit.method.spheres.soft.checks import rubs
 from mesokit.method.spheres.soft.engine.central import Central
 from mesokit.method.spheres.soft.engine.contact.force import OWN, Contact
@@ -58,7 +58,7 @@ def given_of(case: Case, made: Made) -> SoftSetup:
         nearest,
         motion,
         walls.rows,
-        np.array([_own(case, s) for _, s in walls.surfaces]).reshape(-1, OWN),
+        np.array([_own(case, i, s) for i, s in walls.surfaces]).reshape(-1, OWN),
         case.run.seed,
         section.skin_of(box, closed_axes(case.walls)),
         others_of(case, made),
@@ -123,12 +123,14 @@ def others_of(case: Case, made: Made) -> Others | None:
         return None
     solids = Solids(case.walls, case.box, only=which)
     away = float(made.diameters.max()) / 2 + _ahead(case)
-    own = np.array([_own(case, body.surface) for body in solids.bodies])
+    pairs = zip(solids.walls, solids.bodies, strict=True)
+    own = np.array([_own(case, i, body.surface) for i, body in pairs])
     return Others(solids.reaching(away), solids.pattern, own, solids)
 
 
-def _own(case: Case, surface: Surface) -> tuple[float, float]:
-    """Damping ratio (-1: as of pairs) and friction of a surface."""
+def _own(case: Case, i: int, surface: Surface) -> tuple[float, float, float]:
+    """Damping ratio (-1: as of pairs) and friction of a surface of wall number i, and the time at
+    which it is taken away."""
     contact, law = surface.contact, case.spheres.pair
     restitution = None if contact is None else contact.restitution
     friction = None if contact is None else contact.friction
@@ -136,4 +138,5 @@ def _own(case: Case, surface: Surface) -> tuple[float, float]:
     return (
         -1.0 if restitution is None else damping_ratio(restitution),
         0.0 if surface.rule == "slip" else usual if friction is None else friction,
+        opening(case, i),
     )

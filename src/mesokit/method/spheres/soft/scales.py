@@ -49,6 +49,7 @@ def speed_of_walls(case: Case) -> float:
         rate = math.hypot(*(turning if isinstance(turning, tuple) else (turning,)))
         # A sphere at rest gets twice the speed of a plate that hits it.
         struck = 0.0 if contact is None else 2 * contact.amplitude * contact.frequency
+        struck += 0.0 if contact is None else 2 * abs(contact.speed)
         speeds.append(math.hypot(*(surface.velocity or (0.0,))) + rate * farthest + struck)
     return max(speeds)
 

@@ -8,7 +8,14 @@ from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.contacts.groups import INVERSE
 from mesokit.method.spheres.common.made import Made
-from mesokit.method.spheres.common.walls import AMPLITUDE, MOVES, other_walls, room_of, surface_rows
+from mesokit.method.spheres.common.walls import (
+    AMPLITUDE,
+    MOVES,
+    SPEED,
+    other_walls,
+    room_of,
+    surface_rows,
+)
 from mesokit.method.spheres.soft.engine.groups import Motion
 from mesokit.method.spheres.soft.engine.system import SoftSetup, SoftSystem
 from mesokit.method.spheres.soft.laws import contact_of, others_of, three_axes
@@ -34,7 +41,7 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
     walls, (n, d) = surface_rows(case, other_walls(case)).rows, places.shape
     others = others_of(case, made)
     if others is not None:
-        others.own[:] = -1.0, friction
+        others.own[:] = -1.0, friction, math.inf
     g = math.hypot(*gravity)
     height = math.fsum(abs(a) / g * length for a, length in zip(gravity, size, strict=True))
     largest, mass = float(made.diameters.max()), float(made.masses.max())
@@ -46,8 +53,8 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
     law = SpringDashpot(restitution=RESTITUTION, stiffness=stiffness, friction=friction)
     step = law.contact_time_of(0.5 * float(made.masses.min()), 1.0) / IN_CONTACT
     still = walls.copy()
-    still[:, AMPLITUDE] = still[:, MOVES : MOVES + 3] = 0.0
-    own = np.tile([-1.0, friction], (len(walls), 1))
+    still[:, AMPLITUDE] = still[:, SPEED] = still[:, MOVES : MOVES + 3] = 0.0
+    own = np.tile([-1.0, friction, math.inf], (len(walls), 1))
     turns = (float(d == 3), float(d == 3), 1.0)
     setup = SoftSetup(
         tuple(float(length) for length in size),

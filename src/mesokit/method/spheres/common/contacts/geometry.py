@@ -2,7 +2,7 @@
 
 from mesokit.loops.neighbours import nearest_image
 from mesokit.method.spheres.common.contacts.groups import REACH, Box, SlidBox
-from mesokit.method.spheres.common.walls import KIND, MOVES, PLANE, entries, outward, vibration
+from mesokit.method.spheres.common.walls import KIND, MOVES, PLANE, displaced, entries, outward
 from mesokit.scalar.elementary import rint
 from mesokit.scalar.jit import generic, scalar
 from mesokit.scalar.vector import added_scaled
@@ -40,7 +40,7 @@ def from_wall(rows, w, box, r, time):
     distance, normal = outward(rows, w, box, r)
     moves = entries(rows, w, MOVES, r)
     if rows[w, KIND] == PLANE:
-        shift, speed, _ = vibration(rows, w, time)
+        shift, speed = displaced(rows, w, time)
         return distance - shift, normal, added_scaled(moves, speed, normal)
     return distance, normal, moves
 

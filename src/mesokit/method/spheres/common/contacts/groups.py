@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 REACH = 3  # column of `place`: how far a sphere reaches, a radius or half of a cut-off
 INVERSE = 3  # column of `velocity`: the inverse of the mass
+OPENS = 2  # column of `own` of walls: the time at which they are taken away
 NEVER, WITHIN_THREAD, IN_ALL = range(3)  # whether a pair is on the list of one of its two alone
 
 
@@ -48,7 +49,7 @@ class Lists(NamedTuple):
 
 
 class Walls(NamedTuple):
-    """rows (walls, 14): see `common.walls`; own (walls, width): properties of each; springs
+    """rows (walls, 16): see `common.walls`; own (walls, width): properties of each; springs
     (n * walls, width): what contacts remember; solid: walls of other shapes, see `solid`."""
 
     rows: Any

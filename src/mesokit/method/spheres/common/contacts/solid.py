@@ -21,6 +21,7 @@ from mesokit.geometry.solids.bodies import (
     surface_velocity,
     term_clearance,
 )
+from mesokit.method.spheres.common.contacts.groups import OPENS
 from mesokit.method.spheres.common.contacts.remembered import NO_SPRINGS, keep
 from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
 from mesokit.scalar.pointer import whole, word
@@ -56,14 +57,17 @@ def lengthened(x):
 
 
 @seldom
-def nearest_place(tables, x, within, one, other):
-    """The nearest term whose normal differs from these two: distance, normal and term."""
+def nearest_place(tables, own, time, x, within, one, other):
+    """The nearest term whose normal differs from these two: distance, normal and term.
+
+    Bodies that have been taken away do not count, see `Solid.own`.
+    """
     least, normal, term = within, scaled(0.0, x), NO_TERM
     cell = home_cell(tables, x)
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
         candidate = whole(word(tables, NEAR), j)
         bound, part = term_clearance(tables, candidate, x)
-        if bound < least:
+        if bound < least and time < own[whole(word(tables, BODY), candidate), OPENS]:
             c, n = part_place(tables, part, x, bound)
             if c < least and dot(n, one) < ALIKE and dot(n, other) < ALIKE:
                 least, normal, term = c, n, candidate
@@ -91,25 +95,25 @@ def part_place(tables, part, x, bound):
 
 
 @scalar
-def place_at_solid(solid, r, within, one, other):
+def place_at_solid(solid, r, time, within, one, other):
     """The nearest term as `nearest_place` finds it, with vectors of three components."""
     tables, axes = solid.bodies.tables, solid.pattern
     x, a, b = shortened(r, axes), shortened(one, axes), shortened(other, axes)
-    distance, normal, term = nearest_place(tables, x, within, a, b)
+    distance, normal, term = nearest_place(tables, solid.own, time, x, within, a, b)
     return Place(distance, lengthened(normal), term)
 
 
 @scalar
-def touched(solid, r, within):
-    """The surfaces nearer than `within` to a place: three at most."""
+def touched(solid, r, time, within):
+    """The surfaces nearer than `within` to a place at a time: three at most."""
     nothing = (0.0, 0.0, 0.0)
     nowhere = Place(within, nothing, NO_TERM)
-    first = place_at_solid(solid, r, within, nothing, nothing)
+    first = place_at_solid(solid, r, time, within, nothing, nothing)
     second, third = nowhere, nowhere
     if first.term != NO_TERM:
-        second = place_at_solid(solid, r, within, first.normal, nothing)
+        second = place_at_solid(solid, r, time, within, first.normal, nothing)
     if second.term != NO_TERM:
-        third = place_at_solid(solid, r, within, first.normal, second.normal)
+        third = place_at_solid(solid, r, time, within, first.normal, second.normal)
     return first, second, third
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.method.spheres.common.contacts.geometry import from_to, reach, row
-from mesokit.method.spheres.common.contacts.groups import Solid
+from mesokit.method.spheres.common.contacts.groups import OPENS, Solid
 from mesokit.method.spheres.common.contacts.remembered import NO_SPRINGS, keep
 from mesokit.method.spheres.common.contacts.solid import (
     body_of,
@@ -17,8 +17,8 @@ from mesokit.method.spheres.common.contacts.solid import (
     moves_at,
     touched,
 )
-from mesokit.method.spheres.common.walls import KIND, MOVES, PLANE, entries, outward, vibration
-from mesokit.method.spheres.rigid.engine.groups import DRAG, INVERSE, LEAST
+from mesokit.method.spheres.common.walls import KIND, MOVES, PLANE, displaced, entries, outward
+from mesokit.method.spheres.rigid.engine.groups import DRAG, INVERSE, LEAST, PER_MASS, SHIFT
 from mesokit.method.spheres.rigid.engine.sliding import image_speed
 from mesokit.method.spheres.rigid.law.cohesion import pull
 from mesokit.method.spheres.rigid.law.restitution import bouncing
@@ -116,7 +116,7 @@ def find_contacts(law, step, time, ahead, mine, world, found, room):
                 keep(lists.springs, slot, NO_SPRINGS)
         count, changed = find_at_rows(law, step, time, ahead, i, world, found, room, count, changed)
         count, changed = find_beside(
-            world.walls.solid, law, step, ahead, i, world, found, room, count, changed
+            world.walls.solid, law, step, time, ahead, i, world, found, room, count, changed
         )
     return count, changed
 
@@ -162,7 +162,7 @@ def put(law, step, world, found, f, side):
 
 @scalar
 def put_roll(law, world, found, f, reached, inverse):
-    """Write what friction against rolling needs; inverse: of the radius of the other, 0 of a wall."""
+    """Write what friction against rolling needs; inverse: of the other radius, 0 of a wall."""
     if law.rolling > 0.0:
         motion, i, j = world.motion, found.pair[f, 0], found.pair[f, 1]
         one, other = 1.0 / reached, inverse
@@ -180,14 +180,20 @@ def find_at_rows(law, step, time, ahead, i, world, found, room, count, changed):
     for w in range(len(rows)):
         distance, out = outward(rows, w, box, r)
         moves, shift = entries(rows, w, MOVES, r), 0.0
-        if rows[w, KIND] == PLANE:
-            shift, _, _ = vibration(rows, w, time)
-            later, _, _ = vibration(rows, w, time + step)
+        pushed = world.plates.drive[w, PER_MASS] > 0.0
+        if pushed:
+            shift = world.plates.state[w, SHIFT]
+        elif rows[w, KIND] == PLANE:
+            shift, _ = displaced(rows, w, time)
+            later, _ = displaced(rows, w, time + step)
             moves = added_scaled(moves, (later - shift) / step, out)
         gap, slot = distance - shift - reached, i * len(rows) + w
-        if gap < ahead:
+        if gap < ahead and time < walls.own[w, OPENS]:
             f = place_for(room, count)
-            changed |= put_wall(world, found, room, f, i, slot * KINDS + ROW, w, moves)
+            at = world.plates.first + w if pushed else len(bodies.number) + f
+            if not pushed:
+                still(world, at, moves)
+            changed |= put_wall(world, found, room, f, i, slot * KINDS + ROW, w, at)
             normal = first(out, world.flat)
             side = Side(normal, gap, 0.0, walls.own[w, FRICTION], walls.own[w, RESTITUTION])
             put(law, step, world, found, f, side)
@@ -199,39 +205,44 @@ def find_at_rows(law, step, time, ahead, i, world, found, room, count, changed):
 
 
 @scalar
-def put_wall(world, found, room, f, i, slot, w, moves):
-    """Write a contact of a grain with a wall, which has a row of motion of its own; whether it is
-    new."""
-    n = len(world.bodies.number)
-    found.key[f, 0], found.key[f, 1] = world.bodies.number[i], n + w
-    write(world.motion, n + f, 0, first(moves, world.flat))
-    world.motion[n + f, INVERSE] = 0.0
-    write(world.motion, n + f, spin_at(world.flat), alongside(world.flat))
-    return note(found, room, f, i, n + f, slot)
+def put_wall(world, found, room, f, i, slot, w, at):
+    """Write a contact of a grain with a wall number w, in row `at` of motion; whether it is new."""
+    found.key[f, 0], found.key[f, 1] = world.bodies.number[i], len(world.bodies.number) + w
+    return note(found, room, f, i, at, slot)
+
+
+@scalar
+def still(world, at, moves):
+    """Write the motion of a wall that nothing moves, in a row of its own for each contact."""
+    for motion in (world.motion, world.before):
+        write(motion, at, 0, first(moves, world.flat))
+        motion[at, INVERSE] = 0.0
+        write(motion, at, spin_at(world.flat), alongside(world.flat))
 
 
 @generic
-def find_beside(solid, law, step, ahead, i, world, found, room, count, changed):
+def find_beside(solid, law, step, time, ahead, i, world, found, room, count, changed):
     """Find the contacts of a grain with walls of any shape."""
 
 
 find_beside.register(Nothing)(
-    lambda solid, law, step, ahead, i, world, found, room, count, changed: (count, changed)
+    lambda solid, law, step, time, ahead, i, world, found, room, count, changed: (count, changed)
 )
 
 
 @find_beside.register(Solid)
-def _(solid, law, step, ahead, i, world, found, room, count, changed):
+def _(solid, law, step, time, ahead, i, world, found, room, count, changed):
     r, reached, rows = row(world.bodies.place, i), reach(world.bodies, i), len(world.walls.rows)
-    places = touched(solid, r, reached + ahead)
+    places = touched(solid, r, time, reached + ahead)
     # A contact that ends frees the memory of its impulse first.
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
         if place.term != NO_TERM:
             f, body = place_for(room, count), body_of(solid, place.term)
             slot = contact_with(solid, i, place.term) * KINDS + TERM
-            moves = moves_at(solid, r, place.term)
-            changed |= put_wall(world, found, room, f, i, slot, rows + place.term, moves)
+            at = len(world.bodies.number) + f
+            still(world, at, moves_at(solid, r, place.term))
+            changed |= put_wall(world, found, room, f, i, slot, rows + place.term, at)
             own, normal = solid.own, first(place.normal, world.flat)
             gap = place.distance - reached
             side = Side(normal, gap, 0.0, own[body, FRICTION], own[body, RESTITUTION])

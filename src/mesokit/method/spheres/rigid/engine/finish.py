@@ -6,7 +6,7 @@ from mesokit.geometry.protocol import Nothing
 from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.spheres.common.contacts.groups import Solid
-from mesokit.method.spheres.common.contacts.remembered import Springs, keep, kept
+from mesokit.method.spheres.common.contacts.remembered import NO_SPRINGS, Springs, keep, kept
 from mesokit.method.spheres.common.contacts.solid import MOST, body_of
 from mesokit.method.spheres.common.contacts.taken import take
 from mesokit.method.spheres.common.walls import entries
@@ -19,6 +19,7 @@ from mesokit.method.spheres.rigid.engine.find import (
     PULL,
     ROW,
     TORQUE,
+    after_drag,
     alongside,
     spin_at,
     write,
@@ -26,6 +27,7 @@ from mesokit.method.spheres.rigid.engine.find import (
 from mesokit.method.spheres.rigid.engine.groups import DRAG, INVERSE, MOST_COLOURS, PUSH
 from mesokit.method.spheres.rigid.engine.sliding import across
 from mesokit.method.spheres.rigid.engine.sweep import pair_of, part_of, relative
+from mesokit.method.spheres.rigid.law.coulomb import cut
 from mesokit.method.spheres.rigid.law.frame import impulse, parts, sliding
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import by_type, generic, scalar
@@ -59,11 +61,12 @@ def bring(worker, world, found, order, count):
             order.contact[c, k] = found.contact[f, k]
         for k in range(found.roll.shape[1] if len(found.roll) > 0 else 0):
             order.roll[c, k] = found.roll[f, k]
-        springs, s = memory_of(world, found.slot[f])
-        last, normal = kept(springs, s), entries(found.contact, f, 0, flat)
+        last, normal = kept_at(world, found.slot[f]), entries(found.contact, f, 0, flat)
         push, drag = parts(normal, first(last.sliding, flat))
-        order.contact[c, d + PUSH] = max(push, 0.0)
-        write(order.contact, c, d + DRAG, drag)
+        push = max(push, 0.0)
+        order.contact[c, d + PUSH] = push
+        most_drag = found.contact[f, after_drag(flat)] * push  # the normal has turned since
+        write(order.contact, c, d + DRAG, cut(drag, most_drag))
         if len(found.roll) > 0:
             write(order.roll, c, TORQUE, untwisted(normal, last.rolling))
 
@@ -85,23 +88,48 @@ def twisted(normal, torque):
 
 
 @scalar
-def memory_of(world, slot):
-    """Where the impulse of a contact is remembered: an array and a row of it."""
+def kept_at(world, slot):
+    """What a contact remembers of the last step."""
     s, kind = slot // KINDS, slot % KINDS
     if kind == PAIR:
-        return world.lists.springs, s
+        return kept(world.lists.springs, s)
     if kind == ROW:
-        return world.walls.springs, s
-    return springs_beside(world.walls.solid, world.walls.springs), s
+        return kept(world.walls.springs, s)
+    return kept_beside(world.walls.solid, s)
+
+
+@scalar
+def keep_at(world, slot, now):
+    """Store what a contact remembers."""
+    s, kind = slot // KINDS, slot % KINDS
+    if kind == PAIR:
+        keep(world.lists.springs, s, now)
+    elif kind == ROW:
+        keep(world.walls.springs, s, now)
+    else:
+        keep_beside(world.walls.solid, s, now)
 
 
 @generic
-def springs_beside(solid, springs):
-    """What contacts with walls of any shape remember; `springs` if there are none."""
+def kept_beside(solid, s):
+    """What the contact number s with walls of any shape remembers."""
 
 
-springs_beside.register(Nothing)(lambda solid, springs: springs)
-springs_beside.register(Solid)(lambda solid, springs: solid.springs)
+kept_beside.register(Nothing)(lambda solid, s: NO_SPRINGS)
+kept_beside.register(Solid)(lambda solid, s: kept(solid.springs, s))
+
+
+@generic
+def keep_beside(solid, s, now):
+    """Store what the contact number s with walls of any shape remembers."""
+
+
+keep_beside.register(Nothing)(lambda solid, s, now: None)
+
+
+@keep_beside.register(Solid)
+def _(solid, s, now):
+    keep(solid.springs, s, now)
 
 
 @generic
@@ -122,16 +150,15 @@ def finish(worker, law, step, world, order, total, taken):
         i, j = pair_of(order, c)
         normal = entries(contact, c, 0, flat)
         push, drag = contact[c, d + PUSH], entries(contact, c, d + DRAG, alongside(flat))
-        springs, s = memory_of(world, order.slot[c])
         rolling = (0.0, 0.0, 0.0)
         if law.rolling > 0.0:
             rolling = twisted(normal, entries(order.roll, c, TORQUE, alongside(flat)))
-        keep(springs, s, Springs(in_space(impulse(normal, push, drag)), rolling))
+        keep_at(world, order.slot[c], Springs(in_space(impulse(normal, push, drag)), rolling))
         pushed = push - order.beside[c, PULL]
         count_losses(law, world, order, c, i, j, normal, pushed, drag, taken)
         kind = order.slot[c] % KINDS
         if kind != PAIR:
-            rows = len(world.walls.rows)
+            rows, s = len(world.walls.rows), order.slot[c] // KINDS
             w = s % rows if kind == ROW else rows + body_beside(world.walls.solid, s)
             whole = in_space(impulse(normal, pushed, drag))
             take(taken, w, counted(whole, law.scale))

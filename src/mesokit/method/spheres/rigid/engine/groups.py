@@ -14,7 +14,8 @@ CONTACT = {2: 8, 3: 12}
 ROLL = 8  # columns of what friction against rolling needs
 # columns of `noted` of a thread, which has two cache lines
 FARTHEST, FASTEST, DONE, WHY, COUNT, CHANGED, LARGEST, SUM, TOUCHING, TOP, DEEPEST = range(11)
-SWEEPS, RATIO, MEAN, STEPS, NOTED = 11, 12, 13, 14, 16  # of the last step, and sums since a look
+SWEEPS, RATIO, MEAN, STEPS, NOTED = 11, 12, 13, 14, 16  # of the last step, and sweeps so far
+SHIFT, SPEED, PER_MASS, FORCE, PRESSURE = 0, 1, 0, 1, 2  # columns of state and drive of `Plates`
 GOES_ON, OLD_LISTS, NO_ROOM, TOO_FAST = range(4)  # values of WHY
 MOST_COLOURS = 60  # contacts that find none of these are updated by one thread
 
@@ -88,9 +89,9 @@ class Order(NamedTuple):
     """Contacts in the order of sweeps: colour after colour, or by number.
 
     pair, slot, contact, beside, roll: see `Found`; at (most,): the place here of each that is
-    found; by_number (most,): contacts by their keys; colour (most,); begin (n + 1,): first contact of each
-    number; used (n,): colours of a grain, as bits; colours (MOST_COLOURS + 3,): where each begins,
-    and at the end, how many; shuffled (most,): the order of a sweep; change (most, 4): of impulses.
+    found; by_number (most,): contacts by their keys; colour (most,); begin (n + 1,): first contact
+    of each number; used (n,): colours of a grain, as bits; colours (MOST_COLOURS + 2,): where each
+    begins; shuffled (most,): the order of a sweep; change (most, 4): of impulses.
     """
 
     pair: Any
@@ -108,10 +109,20 @@ class Order(NamedTuple):
     change: Any
 
 
+class Plates(NamedTuple):
+    """Plates that are pushed. state (walls, 2): how far each has moved into the box, and its speed;
+    drive (walls, 3): inverse mass, 0 of all other walls, force, and pressure; first: place of the
+    first wall in `World.motion`, where a plate that is pushed has one row for all its contacts."""
+
+    state: Any
+    drive: Any
+    first: int
+
+
 class World(NamedTuple):
     """The grains, their box (at rest, or as it slides), lists and walls; motion and before
-    (n + most, 4 or 8): of grains and walls, now and at the start of the step; flat: a pattern of a
-    vector."""
+    (n + most, 4 or 8): of grains and walls, now and at the start of the step; plates: that are
+    pushed; flat: a pattern of a vector."""
 
     bodies: Bodies
     box: Any
@@ -119,4 +130,5 @@ class World(NamedTuple):
     walls: Walls
     motion: Any
     before: Any
+    plates: Plates
     flat: Any

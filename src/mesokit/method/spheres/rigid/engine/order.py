@@ -15,12 +15,12 @@ SHUFFLE = METHOD + np.uint64(70)  # purpose of the random numbers of an order
 
 
 @scalar
-def arrange(worker, solver, n, found, order, noted):
+def arrange(worker, solver, n, plates, found, order, noted):
     """Find the place of every contact; how many there are. One thread does this."""
     most = len(found.slot) // worker.threads
     total = by_number(worker, n, most, found, order, noted)
     if solver.order == COLOURED or solver.order == TOGETHER:
-        colour(worker, n, most, total, found, order, noted)
+        colour(worker, n, plates, most, total, found, order, noted)
     else:
         for q in range(total):
             order.at[order.by_number[q]] = q
@@ -53,7 +53,7 @@ def by_number(worker, n, most, found, order, noted):
 
 
 @scalar
-def colour(worker, n, most, total, found, order, noted):
+def colour(worker, n, plates, most, total, found, order, noted):
     """Colour the contacts: each has the first colour that none of its two grains has yet."""
     used, colours = order.used, order.colours
     used[:] = 0
@@ -62,6 +62,8 @@ def colour(worker, n, most, total, found, order, noted):
         f = order.by_number[q]
         i, j = found.pair[f, 0], found.pair[f, 1]
         taken, free = used[i] | (used[j] if j < n else 0), 0
+        if j >= plates:  # a plate that is pushed, with which others are in contact as well
+            free = MOST_COLOURS
         while free < MOST_COLOURS and taken & 1:
             taken, free = taken >> 1, free + 1
         order.colour[f] = free

@@ -13,7 +13,8 @@ from mesokit.loops.layout import share
 from mesokit.loops.neighbours import outdated
 from mesokit.loops.threads import barrier
 from mesokit.method.spheres.common.contacts.geometry import row, shortest
-from mesokit.method.spheres.rigid.engine.find import Room, find_contacts
+from mesokit.method.spheres.common.walls import AXIS, KIND, MOVES, PLANE, entries
+from mesokit.method.spheres.rigid.engine.find import Room, alongside, find_contacts, spin_at, write
 from mesokit.method.spheres.rigid.engine.finish import bring, finish, fly, kick, push_back
 from mesokit.method.spheres.rigid.engine.groups import (
     CHANGED,
@@ -21,11 +22,17 @@ from mesokit.method.spheres.rigid.engine.groups import (
     DONE,
     FARTHEST,
     FASTEST,
+    FORCE,
     GOES_ON,
+    INVERSE,
     MEAN,
     NO_ROOM,
     OLD_LISTS,
+    PER_MASS,
+    PRESSURE,
     RATIO,
+    SHIFT,
+    SPEED,
     STEPS,
     SWEEPS,
     TOO_FAST,
@@ -38,7 +45,9 @@ from mesokit.method.spheres.rigid.engine.sliding import box_in_step, slip
 from mesokit.method.spheres.rigid.engine.sweep import solve
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import Counter
-from mesokit.scalar.vector import added_scaled
+from mesokit.scalar.vector import added_scaled, dot, first
+
+ZERO = (0.0, 0.0, 0.0)
 
 
 @kernel
@@ -49,7 +58,7 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
     of the last of them the number of sweeps and the largest change of an impulse over the mean.
     """
     n, flat = len(world.bodies.number), world.flat
-    first, last = share(n, worker.thread, worker.threads)
+    first_one, last = share(n, worker.thread, worker.threads)
     mine, most = noted[worker.thread], len(found.slot) // worker.threads
     lost = taken[worker.thread]
     mine[WHY] = GOES_ON
@@ -60,9 +69,9 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
         now = Counter(counter.seed, counter.step + np.uint64(done))
         time = motion.step * float(now.step)
         box = box_in_step(shear, world.box, time, motion.step)
-        there = World(world.bodies, box, world.lists, world.walls, world.motion, world.before, flat)
+        there = with_box(world, box)
         # 1. How far grains have moved since lists were made, and how fast they are: t.
-        mine[FARTHEST], mine[FASTEST] = farthest_and_fastest(there, first, last)
+        mine[FARTHEST], mine[FASTEST] = farthest_and_fastest(there, first_one, last)
         barrier(worker)
         fastest = 0.0
         for t in range(worker.threads):
@@ -79,7 +88,7 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
         # 2. Contacts that may close within the step, at the places and velocities of t.
         room = Room(worker.thread * most, most, afresh)
         count, changed = find_contacts(
-            law, motion.step, time, ahead, (first, last), there, found, room
+            law, motion.step, time, ahead, (first_one, last), there, found, room
         )
         changed |= float(count) != mine[COUNT]
         mine[COUNT], mine[CHANGED] = float(count), 1.0 if changed else 0.0
@@ -93,11 +102,12 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
             break
         # 3. Their order, by the first thread; it stays while the contacts are the same.
         if anew and worker.thread == 0:
-            arrange(worker, solver, n, found, order, noted)
+            arrange(worker, solver, n, world.plates.first, found, order, noted)
         # 4. Gravity: v freely to t + dt.
-        for i in range(first, last):
+        for i in range(first_one, last):
             kick(motion, world.bodies, world.before, i, flat)
-        keep_walls(world, found, worker.thread * most, count)
+        if worker.thread == 0:
+            push_plates(motion, world)
         barrier(worker)
         total = 0
         for t in range(worker.threads):
@@ -115,12 +125,21 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
             barrier(worker)
             push_back(worker, law, there, order, total)
         barrier(worker)
-        for i in range(first, last):
+        if worker.thread == 0:
+            move_plates(motion, world)
+        for i in range(first_one, last):
             fly(motion.step, world.bodies, box, i, flat)
         done += 1
         mine[STEPS] += float(swept)
         mine[WHY] = GOES_ON
     mine[DONE] = float(done)
+
+
+@scalar
+def with_box(world, box):
+    """The world with the box of a step."""
+    memory = world.motion, world.before, world.plates, world.flat
+    return World(world.bodies, box, world.lists, world.walls, *memory)
 
 
 @scalar
@@ -135,10 +154,10 @@ def reach_of_step(law, motion, fastest):
 
 
 @scalar
-def farthest_and_fastest(world, first, last):
+def farthest_and_fastest(world, first_one, last):
     """The largest squared displacement since lists were made, and the largest speed."""
     bodies, farthest, fastest = world.bodies, 0.0, 0.0
-    for i in range(first, last):
+    for i in range(first_one, last):
         gone = added_scaled(row(bodies.place, i), -1.0, row(world.lists.made_at, i))
         x, y, z = shortest(world.box, gone)
         square = x * x + y * y + z * z
@@ -147,14 +166,50 @@ def farthest_and_fastest(world, first, last):
         for k in range(len(world.flat)):
             speed += bodies.motion[i, k] * bodies.motion[i, k]
         fastest = max(fastest, speed if speed >= 0.0 else np.inf)
+    for w in range(len(world.walls.rows)):
+        fastest = max(fastest, world.plates.state[w, SPEED] * world.plates.state[w, SPEED])
     return farthest, math.sqrt(fastest)
 
 
 @scalar
-def keep_walls(world, found, start, count):
-    """Walls move in the whole step as at its start."""
-    n = len(world.bodies.number)
-    for f in range(start, start + count):
-        if found.pair[f, 1] >= n:
-            for k in range(world.before.shape[1]):
-                world.before[n + f, k] = world.motion[n + f, k]
+def push_plates(motion, world):
+    """Give plates that are pushed their velocities freely at t + dt, and rows of motion."""
+    state, drive, rows = world.plates.state, world.plates.drive, world.walls.rows
+    for w in range(len(rows)):
+        if drive[w, PER_MASS] > 0.0:
+            at, out = world.plates.first + w, first(entries(rows, w, AXIS, ZERO), world.flat)
+            moves = first(entries(rows, w, MOVES, ZERO), world.flat)
+            force = drive[w, FORCE] + drive[w, PRESSURE] * area(world, w)
+            later = state[w, SPEED] + motion.step * force * drive[w, PER_MASS]
+            write(world.before, at, 0, added_scaled(moves, state[w, SPEED], out))
+            write(world.motion, at, 0, added_scaled(moves, later, out))
+            for rows_of_motion in (world.motion, world.before):
+                rows_of_motion[at, INVERSE] = drive[w, PER_MASS]
+                write(rows_of_motion, at, spin_at(world.flat), alongside(world.flat))
+
+
+@scalar
+def area(world, w):
+    """Area of a plate, or length in 2D, between the plates across it as they have moved."""
+    rows, found, sides = world.walls.rows, 1.0, world.box.size
+    for k in range(len(world.flat)):
+        if rows[w, AXIS + k] == 0.0:
+            length = sides[k]
+            for other in range(len(rows)):
+                if rows[other, KIND] == PLANE and rows[other, AXIS + k] != 0.0:
+                    length -= world.plates.state[other, SHIFT]
+            found *= length
+    return found
+
+
+@scalar
+def move_plates(motion, world):
+    """Move plates that are pushed by their new speeds: t -> t + dt."""
+    state, rows = world.plates.state, world.walls.rows
+    for w in range(len(rows)):
+        if world.plates.drive[w, PER_MASS] > 0.0:
+            out = first(entries(rows, w, AXIS, ZERO), world.flat)
+            moves = first(entries(rows, w, MOVES, ZERO), world.flat)
+            now = entries(world.motion, world.plates.first + w, 0, world.flat)
+            state[w, SPEED] = dot(added_scaled(now, -1.0, moves), out)
+            state[w, SHIFT] += motion.step * state[w, SPEED]

@@ -54,8 +54,17 @@ class Seen(NamedTuple):
 
 
 @scalar
-def hit(motion, i, j, normal, push, drag, per_turn):
-    """Give an impulse to the two grains of a contact."""
+def hit(motion, plates, i, j, normal, push, drag, per_turn):
+    """Give an impulse to the two grains of a contact, or to a grain and a wall."""
+    if j >= np.uint64(plates):
+        hit_plate(motion, i, j, normal, push, drag, per_turn)
+    else:
+        hit_grains(motion, i, j, normal, push, drag, per_turn)
+
+
+@scalar
+def hit_grains(motion, i, j, normal, push, drag, per_turn):
+    """Give an impulse to two grains, or to a grain and a wall that nothing moves."""
     spin = spin_at(normal)
     whole, spun = impulse(normal, push, drag), turn(normal, drag)
     one, other = motion[i, INVERSE], motion[j, INVERSE]
@@ -64,6 +73,17 @@ def hit(motion, i, j, normal, push, drag, per_turn):
     before = entries(motion, i, spin, spun), entries(motion, j, spin, spun)
     write(motion, i, spin, added_scaled(before[0], -one * per_turn, spun))
     write(motion, j, spin, added_scaled(before[1], -other * per_turn, spun))
+
+
+@scalar
+def hit_plate(motion, i, j, normal, push, drag, per_turn):
+    """The same with a plate that is pushed, which moves along its normal alone."""
+    spin, one, other = spin_at(normal), motion[i, INVERSE], motion[j, INVERSE]
+    whole, spun = impulse(normal, push, drag), turn(normal, drag)
+    write(motion, i, 0, added_scaled(entries(motion, i, 0, normal), one, whole))
+    write(motion, j, 0, added_scaled(entries(motion, j, 0, normal), -other * push, normal))
+    before = entries(motion, i, spin, spun)
+    write(motion, i, spin, added_scaled(before, -one * per_turn, spun))
 
 
 @scalar
@@ -109,11 +129,11 @@ def wanted(law, motion, contact, c, i, j, flat):
 
 
 @scalar
-def update(law, motion, contact, roll, c, i, j, flat):
+def update(law, motion, plates, contact, roll, c, i, j, flat):
     """Update the impulse of a contact; the largest change, and the impulse along the normal."""
     d = len(flat)
     normal, push, drag = wanted(law, motion, contact, c, i, j, flat)
-    hit(motion, i, j, normal, push, drag, law.per_turn)
+    hit(motion, plates, i, j, normal, push, drag, law.per_turn)
     new = contact[c, d + PUSH] + push
     contact[c, d + PUSH] = new
     write(contact, c, d + DRAG, added(entries(contact, c, d + DRAG, drag), drag))
@@ -180,12 +200,14 @@ def part_of(worker, k, first, last):
 def give(law, world, order, first, last):
     """Give the impulses that some contacts begin with to their grains."""
     motion, contact, roll, d = world.motion, order.contact, order.roll, len(world.flat)
+    plates = world.plates.first
     for c in range(np.uint64(first), np.uint64(last)):
         i, j = pair_of(order, c)
         normal = entries(contact, c, 0, world.flat)
         push = contact[c, d + PUSH] - order.beside[c, PULL]
         hit(
             motion,
+            plates,
             i,
             j,
             normal,
@@ -202,10 +224,11 @@ def give(law, world, order, first, last):
 def sweep_some(law, world, order, first, last, scale, seen):
     """Update the contacts from number `first` to before `last`, one after another."""
     motion, contact, roll = world.motion, order.contact, order.roll
+    plates = world.plates.first
     change, total, touching, top = seen.change, seen.sum, seen.touching, seen.top
     for c in range(np.uint64(first), np.uint64(last)):
         i, j = pair_of(order, c)
-        changed, push = update(law, motion, contact, roll, c, i, j, world.flat)
+        changed, push = update(law, motion, plates, contact, roll, c, i, j, world.flat)
         change, top = max(change, changed), max(top, push)
         total += np.int64(push * scale)
         touching += 1 if push > 0.0 else 0
@@ -216,11 +239,12 @@ def sweep_some(law, world, order, first, last, scale, seen):
 def sweep_shuffled(law, world, order, total, scale, seen):
     """Update all contacts in the order that was drawn."""
     motion, contact, roll = world.motion, order.contact, order.roll
+    plates = world.plates.first
     change, summed, touching, top = seen.change, seen.sum, seen.touching, seen.top
     for q in range(np.uint64(total)):
         c = np.uint64(order.shuffled[q])
         i, j = pair_of(order, c)
-        changed, push = update(law, motion, contact, roll, c, i, j, world.flat)
+        changed, push = update(law, motion, plates, contact, roll, c, i, j, world.flat)
         change, top = max(change, changed), max(top, push)
         summed += np.int64(push * scale)
         touching += 1 if push > 0.0 else 0
@@ -257,6 +281,7 @@ def sweep_together(worker, law, solver, world, order, total, scale, seen):
     """Update all contacts at once: first all changes, by the velocities of before, then give them
     to the grains, colour after colour."""
     motion, contact, d = world.motion, order.contact, len(world.flat)
+    plates = world.plates.first
     change, summed, touching, top = seen.change, seen.sum, seen.touching, seen.top
     first, last = share(total, worker.thread, worker.threads)
     for c in range(np.uint64(first), np.uint64(last)):
@@ -280,7 +305,7 @@ def sweep_together(worker, law, solver, world, order, total, scale, seen):
                 i, j = pair_of(order, c)
                 normal = entries(contact, c, 0, world.flat)
                 drag = entries(order.change, c, 1, alongside(normal))
-                hit(motion, i, j, normal, order.change[c, 0], drag, law.per_turn)
+                hit(motion, plates, i, j, normal, order.change[c, 0], drag, law.per_turn)
             barrier(worker)
     return Seen(change, summed, touching, top)
 

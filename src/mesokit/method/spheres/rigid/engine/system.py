@@ -33,6 +33,7 @@ from mesokit.method.spheres.rigid.engine.groups import (
     Bodies,
     Found,
     Order,
+    Plates,
     World,
 )
 from mesokit.method.spheres.rigid.engine.sliding import AtRest
@@ -52,10 +53,12 @@ class RigidSystem(ListedSpheres):
         self.given, self._packing = given, Packing()
         n, d = len(given.masses), len(given.listed.size)
         self.most = FIRST_ROOM * n // threads + 64
-        self._rows, self._whole = n + self.most * threads, {}
+        self._rows = n + self.most * threads + len(given.listed.rows)
+        self._whole: dict[int, Array] = {}
         super().__init__(given.listed, threads)
         self.flat, self.made_at = (0.0,) * d, 0.0
         self.noted = np.zeros((threads, NOTED))
+        self.plates = np.zeros((len(given.listed.rows), 2))
         others = given.listed.others
         self.surfaces = len(given.listed.rows) + (0 if others is None else len(others.own))
         self.taken_sums = zeros((threads, self.surfaces + 1, WIDTH), np.int64)
@@ -105,7 +108,8 @@ class RigidSystem(ListedSpheres):
     def _grow(self) -> None:
         """Make room for more contacts."""
         self.most = int(GROWTH * self.most) + 1
-        self._rows, self._whole = self.n + self.most * self.worker.size, {}
+        rows = len(self.given.listed.rows)
+        self._rows, self._whole = self.n + self.most * self.worker.size + rows, {}
         bodies, spare = self.make_bodies(self.n), self.make_bodies(self.n)
         for name in bodies._fields:
             getattr(bodies, name)[:] = getattr(self.bodies, name)
@@ -133,6 +137,7 @@ class RigidSystem(ListedSpheres):
         bodies.place[:, :d], bodies.place[:, REACH] = inside, self.given.listed.reach
         bodies.images[:, :d] = images
         self._set_motion(velocities, np.reshape(spins, (self.n, -1)))
+        self.plates[:] = 0
         self.forget_contacts()
         self.renew()
 
@@ -147,7 +152,10 @@ class RigidSystem(ListedSpheres):
     def world(self) -> World:
         """The arrays of the loops in the present order of memory."""
         motion = self._whole[self.bodies.motion.ctypes.data]
-        return World(self.bodies, self.box, self.lists, self.walls, motion, self.before, self.flat)
+        plates = Plates(self.plates, self.given.drive, self._rows - len(self.plates))
+        return World(
+            self.bodies, self.box, self.lists, self.walls, motion, self.before, plates, self.flat
+        )
 
     def run(self, step: int, steps: int) -> None:
         """Do `steps` steps after step number `step`; 0 only loads the compiled loops.
@@ -211,6 +219,7 @@ class RigidSystem(ListedSpheres):
             "place": self.by_number(bodies.place[:, :3]),
             "motion": self.by_number(bodies.motion),
             "images": self.by_number(bodies.images),
+            "plates": self.plates.copy(),
             "taken": all_taken(self.taken_sums),
             "solved": self.noted[0, [SWEEPS, RATIO, MEAN, STEPS]],
         }
@@ -226,6 +235,7 @@ class RigidSystem(ListedSpheres):
         self.forget_contacts()
         self.remember_at_walls(state)
         self.forget_sums()
+        self.plates[:] = state["plates"]
         self.taken_sums[0] = state["taken"]
         self.noted[:, [SWEEPS, RATIO, MEAN, STEPS]] = state["solved"]
         self.renew()

@@ -31,7 +31,7 @@ class ContactSolver(ABC):
     sweeps: int = param(500, doc="most sweeps in a step", ge=1, le=10**7, kw_only=True)
     tolerance: float = param(
         1e-4,
-        doc="sweeps end where the largest change of an impulse over the mean is below it (0: never)",
+        doc="sweeps end where no impulse changes by more of the mean than this (0: never)",
         ge=0,
         le=1,
         kw_only=True,

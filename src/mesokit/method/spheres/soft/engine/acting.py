@@ -29,12 +29,12 @@ def turns(law):
 
 
 @generic
-def beside(solid, law, i, step, world, room):
+def beside(solid, law, i, time, step, world, room):
     """Add force and torque of a solid on a sphere; returns a bound of them."""
 
 
 @generic
-def measure_beside(solid, law, i, world, readings):
+def measure_beside(solid, law, i, time, world, readings):
     """Add the contacts with a solid to the readings of a sphere."""
 
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.method.spheres.common.contacts.geometry import from_to, from_wall, reach, row
+from mesokit.method.spheres.common.contacts.groups import OPENS
 from mesokit.method.spheres.common.contacts.taken import take
 from mesokit.method.spheres.soft.engine.acting import act, measure, turns
 from mesokit.method.spheres.soft.engine.groups import ENERGY, NEAREST, VIRIAL
@@ -71,7 +72,7 @@ def forces_from_walls(law, i, time, world, room):
     low, r = FAR, row(bodies.place, i)
     for w in range(len(walls.rows)):
         distance, out, _ = from_wall(walls.rows, w, box, r, time)
-        if distance < 2.0 * reach(bodies, i):
+        if distance < 2.0 * reach(bodies, i) and time < walls.own[w, OPENS]:
             _, force_over_r = central(law.potential, distance * distance)
             low = min(low, bits(distance * distance) if distance > 0.0 else np.int64(0))
             f, scale = scaled(force_over_r * distance, out), law.scale
@@ -95,7 +96,7 @@ def _(law, i, time, world, readings):
             add_product(readings, law.scale, scaled(force_over_r, separation), separation)
     for w in range(len(walls.rows)):
         distance, _, _ = from_wall(walls.rows, w, box, r, time)
-        if distance < 2.0 * reach(bodies, i):
+        if distance < 2.0 * reach(bodies, i) and time < walls.own[w, OPENS]:
             energy, _ = central(law.potential, distance * distance)
             readings[ENERGY] += quanta(2.0 * energy, law.scale)
 

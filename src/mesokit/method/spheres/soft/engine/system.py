@@ -13,7 +13,7 @@ from mesokit.method.spheres.common.contacts.groups import INVERSE, NEVER, REACH,
 from mesokit.method.spheres.common.contacts.listed import Listed, ListedSpheres, Others
 from mesokit.method.spheres.common.contacts.remembered import pairs_of, remember
 from mesokit.method.spheres.common.contacts.taken import all_taken, in_numbers
-from mesokit.method.spheres.common.walls import AMPLITUDE, AXIS, KIND, PLACE, PLANE
+from mesokit.method.spheres.common.walls import AMPLITUDE, AXIS, KIND, PLACE, PLANE, SPEED
 from mesokit.method.spheres.soft.engine import groups
 from mesokit.method.spheres.soft.engine.acting import measure_all
 from mesokit.method.spheres.soft.engine.contact.room import rooms
@@ -178,7 +178,7 @@ class SoftSystem(ListedSpheres):
         """Raise RunError for a sphere whose centre lies behind a plane wall."""
         places = self.bodies.place[:, :3]
         for row in self.given.rows:
-            if row[KIND] != PLANE:
+            if row[KIND] != PLANE or row[SPEED] < 0:
                 continue
             inside = (places - row[PLACE : PLACE + 3]) @ row[AXIS : AXIS + 3] + row[AMPLITUDE]
             if inside.min() < 0:

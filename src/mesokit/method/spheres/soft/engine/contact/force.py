@@ -17,7 +17,7 @@ from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added, added_scaled, dot, outer, scaled
 
 NONE = (0.0, 0.0, 0.0)
-DAMPING_RATIO, FRICTION, OWN = 0, 1, 2  # columns of `Walls.own`, and their number
+DAMPING_RATIO, FRICTION, OWN = 0, 1, 3  # columns of `Walls.own` before OPENS; number of all
 
 
 class Contact(NamedTuple):

@@ -3,7 +3,7 @@
 from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.method.spheres.common.contacts.geometry import from_wall, reach, row
-from mesokit.method.spheres.common.contacts.groups import Solid
+from mesokit.method.spheres.common.contacts.groups import OPENS, Solid
 from mesokit.method.spheres.common.contacts.remembered import NO_SPRINGS, keep, kept
 from mesokit.method.spheres.common.contacts.solid import (
     body_of,
@@ -53,7 +53,7 @@ def contact_forces_from_walls(law, i, time, step, world, room):
     # springs of one that does not touch are cleared.
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
-        if distance < reach(bodies, i) + law.ahead:
+        if distance < reach(bodies, i) + law.ahead and time < walls.own[w, OPENS]:
             there = surface(distance, out, moves, walls.own, w)
             c = i * len(walls.rows) + w
             bound, counts = add_force(law, i, there, walls.springs, c, step, bodies)
@@ -61,7 +61,7 @@ def contact_forces_from_walls(law, i, time, step, world, room):
             largest = max(largest, bound)
         else:
             keep(walls.springs, i * len(walls.rows) + w, NO_SPRINGS)
-    return max(largest, beside(walls.solid, law, i, step, world, room))
+    return max(largest, beside(walls.solid, law, i, time, step, world, room))
 
 
 @scalar
@@ -86,11 +86,11 @@ def measure_walls(law, i, time, world, readings):
     r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
-        if distance < reach(bodies, i):
+        if distance < reach(bodies, i) and time < walls.own[w, OPENS]:
             there = surface(distance, out, moves, walls.own, w)
             c = i * len(walls.rows) + w
             measure_wall(law, at_wall(0.0, one, there), kept(walls.springs, c), readings)
-    measure_beside(walls.solid, law, i, world, readings)
+    measure_beside(walls.solid, law, i, time, world, readings)
 
 
 @scalar
@@ -101,11 +101,11 @@ def measure_wall(law, touch, springs, readings):
     readings[TOUCHING] += 1
 
 
-beside.register(Nothing)(lambda solid, law, i, step, world, room: 0.0)
+beside.register(Nothing)(lambda solid, law, i, time, step, world, room: 0.0)
 
 
 @measure_beside.register(Nothing)
-def _(solid, law, i, world, readings):
+def _(solid, law, i, time, world, readings):
     return
 
 
@@ -118,10 +118,10 @@ def surface_at(solid, bodies, i, place):
 
 
 @beside.register(Solid)
-def _(solid, law, i, step, world, room):
+def _(solid, law, i, time, step, world, room):
     bodies, largest = world.bodies, 0.0
     # Terms at the places of t + dt. A contact that ends frees the memory of its springs first.
-    places = touched(solid, row(bodies.place, i), reach(bodies, i) + law.ahead)
+    places = touched(solid, row(bodies.place, i), time, reach(bodies, i) + law.ahead)
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
         if place.term != NO_TERM:
@@ -134,9 +134,9 @@ def _(solid, law, i, step, world, room):
 
 
 @measure_beside.register(Solid)
-def _(solid, law, i, world, readings):
+def _(solid, law, i, time, world, readings):
     bodies = world.bodies
-    for place in touched(solid, row(bodies.place, i), reach(bodies, i) + law.ahead):
+    for place in touched(solid, row(bodies.place, i), time, reach(bodies, i) + law.ahead):
         if place.term != NO_TERM and place.distance < reach(world.bodies, i):
             there, _ = surface_at(solid, world.bodies, i, place)
             touch = at_wall(0.0, body(world.bodies, world.bodies.velocity, i), there)
