@@ -19,7 +19,8 @@ def groups(case: Case) -> tuple[Group, ...]:
         Kind(kind.mean_mass(box.dimension), number, kind.name or "", kind.diameter * scale)
         for kind, number in zip(section.kinds, section.counts(box), strict=True)
     )
-    return (Group(NAME, kinds, HAVE, kT=float(section.kT), picture="disks"),)
+    have = (*HAVE, "contact") if section.touching else HAVE
+    return (Group(NAME, kinds, have, kT=float(section.kT), picture="disks"),)
 
 
 def ids_of_kind(case: Case, kind: int | str | None) -> NDArray[np.int64]:

@@ -85,6 +85,11 @@ class Spheres:
         return None
 
     @property
+    def touching(self) -> bool:
+        """Whether contacts last, and have forces that an engine lists (`contacts`)."""
+        return False
+
+    @property
     def energy_source(self) -> Heating | None:
         """The source of energy at fixed times, None without."""
         return None

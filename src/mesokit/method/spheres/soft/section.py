@@ -73,6 +73,10 @@ class SoftSpheres(Spheres):
     )
 
     @property
+    def touching(self) -> bool:
+        return isinstance(self.pair, ContactLaw)
+
+    @property
     def thermostatted(self) -> bool:
         return self.thermostat is not None
 
