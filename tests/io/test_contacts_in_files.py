@@ -178,7 +178,7 @@ def test_particles_without_lasting_contacts_have_none():
 def test_tables_of_contacts_need_contacts(tmp_path):
     case = grains(steps=0, warmup=0, fields=("position",))
     Simulation(case, output=tmp_path / "run", threads=1).run()
-    with pytest.raises(RunError, match="fields = .*: exports need 'contact'"):
+    with pytest.raises(RunError, match=r"fields = .*: exports need 'contact'"):
         mesokit.open(tmp_path / "run").export(tmp_path / "a.csv")
     with pytest.raises(CaseError, match=r"ending '.cvs': expected .*'.csv'\?"):
         mesokit.open(tmp_path / "run").export(tmp_path / "a.cvs")

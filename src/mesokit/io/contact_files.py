@@ -20,7 +20,8 @@ def csv(path: Path, particles: Particles, frames: Iterable[Mapping[str, Any]]) -
     axes = "xyz"[: particles.dimension]
     vectors = [f"{name}_{axis}" for name in VECTORS for axis in axes]
     with path.open("w", encoding="utf-8", newline="\n") as file:
-        names = ("step", "time", "first", "second", *vectors, "gap", "normal_force", "tangential_force")
+        forces = "normal_force", "tangential_force"
+        names = ("step", "time", "first", "second", *vectors, "gap", *forces)
         file.write(",".join(names) + "\n")
         for frame in frames:
             records = frame[FIELD]

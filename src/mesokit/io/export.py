@@ -40,10 +40,10 @@ def export(
 ) -> Path:
     """Write all frames of a run to a file in the format of its ending; an old file is replaced.
 
-    Contacts of grains go to `.csv` or `.local`. Of sites, those in some `states` may be written alone; `images` are writers of pictures of
-    them by ending. Returns the file; of a series the one that lists it, or the first. Of a run that
-    has not ended, frames are those up to its last checkpoint. Raises CaseError for another ending,
-    RunError without frames of places.
+    Contacts of grains go to `.csv` or `.local`. Of sites, those in some `states` may be written
+    alone; `images` are writers of pictures of them by ending. Returns the file; of a series the one
+    that lists it, or the first. Of a run that has not ended, frames are those up to its last
+    checkpoint. Raises CaseError for another ending, RunError without frames of places.
     """
     path, group = Path(path), _lattice(case)
     if group is not None:

@@ -2,8 +2,8 @@
 
 /h5md        version, author, creator
 /parameters  case (TOML) and provenance (JSON); units: what a reduced unit is in SI, if known
-/connectivity  bonds (bonds, 2): places, in the rows of particles, of those that are linked; contacts
-             of each frame, see `h5md_contacts`, which has their forces under /contacts
+/connectivity  bonds (bonds, 2): places, in the rows of particles, of those that are linked; and
+             contacts of each frame, whose forces are under /contacts (see `h5md_contacts`)
 /particles   one group, such as fluid: box, position, velocity, spin (angular velocity), image with
              step, time and value; id, mass, species, and radius of spheres; of a lattice the
              state of each site (frames, sites), in the order of the axes of the box
@@ -214,7 +214,7 @@ def _particles(
         sets[name] = element.create_dataset("value", (frames, n, *deep), dtype, **packed)
         if name in UNITS:
             sets[name].attrs["reduced_unit"] = units[name]
-    contacts = _contacts(file, case, group, frames, kept)
+    contacts = _contacts(file, case, group, kept)
     edges = _box(group, case, frames)
     # Frame by frame and in chunks of particles, so memory does not grow with the run. H5MD has
     # three components, so in 2D the missing one is 0.
@@ -235,15 +235,13 @@ def _particles(
     del group["step"], group["time"]  # the elements have linked them
 
 
-def _contacts(
-    file: Any, case: Case, group: Any, frames: int, kept: Trajectory
-) -> ContactSets | None:
+def _contacts(file: Any, case: Case, group: Any, kept: Trajectory) -> ContactSets | None:
     """Datasets for the contacts of all frames, None where the trajectory has none."""
     if FIELD not in kept.fields:
         return None
     units = {name: units_of(case).of(unit) for name, unit in UNITS_OF_CONTACTS.items()}
     packed = {"compression": kept.compression or None, "shuffle": bool(kept.compression)}
-    return ContactSets(file, group, frames, packed, kept.precision, units)
+    return ContactSets(file, group, packed, kept.precision, units)
 
 
 def _identities(

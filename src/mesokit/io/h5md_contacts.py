@@ -29,16 +29,15 @@ class ContactSets:
     ----------
     file: open for writing.
     group: of the particles, with `step` and `time` of all frames.
-    frames: how many there will be.
     packed: compression of datasets.
     real: type of their numbers.
     units: of `UNITS`, as they are called in the file.
     """
 
     def __init__(
-        self, file: Any, group: Any, frames: int, packed: Mapping[str, Any], real: Any,
-        units: Mapping[str, str],
-    ) -> None:  # fmt: skip
+        self, file: Any, group: Any, packed: Mapping[str, Any], real: Any, units: Mapping[str, str]
+    ) -> None:
+        frames = len(group["step"])
         rows = max(1, min(2 * len(group["id"]), CHUNK))
         self.number = file.create_dataset(f"{REST}/number", (frames,), np.int64)
 
@@ -46,10 +45,8 @@ class ContactSets:
             element = file.require_group(path)
             element["step"], element["time"] = group["step"], group["time"]
             shape, most = (frames, 0, *deep), (frames, None, *deep)
-            return element.create_dataset(
-                "value", shape, dtype, maxshape=most, chunks=(1, rows, *deep), fillvalue=fill,
-                **packed,
-            )  # fmt: skip
+            how = {"maxshape": most, "chunks": (1, rows, *deep), "fillvalue": fill, **packed}
+            return element.create_dataset("value", shape, dtype, **how)
 
         self.sets = {"pair": made(PAIRS, (2,), np.int64, FILL)}
         file[PAIRS].attrs["particles_group"] = group.ref

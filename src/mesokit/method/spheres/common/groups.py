@@ -20,7 +20,9 @@ def groups(case: Case) -> tuple[Group, ...]:
         for kind, number in zip(section.kinds, section.counts(box), strict=True)
     )
     have = (*HAVE, "contact") if section.touching else HAVE
-    return (Group(NAME, kinds, have, kT=float(section.kT), picture="disks"),)
+    kept = () if case.trajectory is None else case.trajectory.fields
+    picture = "force-chains" if {"position", "contact"} <= {*kept} else "disks"
+    return (Group(NAME, kinds, have, kT=float(section.kT), picture=picture),)
 
 
 def ids_of_kind(case: Case, kind: int | str | None) -> NDArray[np.int64]:
