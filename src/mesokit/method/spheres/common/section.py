@@ -90,6 +90,11 @@ class Spheres:
         return False
 
     @property
+    def pair_friction(self) -> float:
+        """Coulomb's coefficient of contacts between two of them, 0 without."""
+        return 0.0
+
+    @property
     def energy_source(self) -> Heating | None:
         """The source of energy at fixed times, None without."""
         return None
