@@ -84,7 +84,7 @@ ROWS = {
     "observe/": ("case", "errors", "geometry", "observe", "seam", "statistics", "theory"),
     "io/": ("case", "errors", "geometry", "io", "seam"),
     "report/": ("case", "errors", "geometry", "io", "observe", "report", "seam"),
-    "report/flow/state.py": ("case", "seam"),
+    "report/flow/state.py": ("case", "io.contact_records", "seam"),
     "report/flow/shaded.py": ("report", "kernels.kernel"),
     "run/": ("case", "errors", "io", "observe.shared", "processes", "report", "run", "seam"),
     "run/loop.py": ("case", "kernels.kept", "processes", "report", "run", "seam"),

@@ -11,9 +11,10 @@ from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
 from mesokit.case.sites import SiteLattice
 
-Quantity = Literal["position", "velocity", "spin", "orientation", "image", "site", "id"]
+Quantity = Literal["position", "velocity", "spin", "orientation", "image", "site", "id", "contact"]
 WIDTHS = {"image": 4, "site": 2, "id": 8}  # bytes of a field; the others follow the precision
 COMPRESSED = 0.9  # thermal noise hardly compresses
+PAIR = 16  # bytes of the two numbers of a contact
 
 
 class Kind(NamedTuple):
@@ -33,7 +34,8 @@ class Group(NamedTuple):
 
     `has` are quantities of each in an engine: those that trajectories may hold, of which an
     "orientation" is a unit quaternion (w, x, y, z); "mass" and "diameter" where each has its own;
-    "heading" where pictures show the direction of a velocity at one time. Sites of a lattice are a
+    "heading" where pictures show the direction of a velocity at one time. "contact": forces and
+    places of all contacts, of those particles that have lasting ones. Sites of a lattice are a
     group that has "site", the number of the state of each: `lattice` is where they are, and
     `states` are the names of the states, none of heights. `kT` is the thermal energy of velocities;
     `picture` the kind of pictures that shows it unless another is chosen.
@@ -180,12 +182,14 @@ def names_and_diameters(groups: Sequence[Group]) -> tuple[tuple[str, ...], NDArr
 
 def components(field: str, dimension: int) -> int:
     """Number of components of a field of each particle: disks spin about one axis, spheres about 3,
-    an orientation is a unit quaternion.
+    an orientation is a unit quaternion. A contact has three vectors and a gap; a sphere of an
+    isostatic packing has as many, shared by two, as the box has axes.
 
     >>> [components(field, 2) for field in ("position", "spin", "id")], components("spin", 3)
     ([2, 1, 1], 3)
     """
     fixed = {"spin": 1 if dimension == 2 else 3, "orientation": 4, "id": 1, "site": 1}
+    fixed["contact"] = dimension * (3 * dimension + 1)
     return fixed.get(field, dimension)
 
 
@@ -199,6 +203,7 @@ def stored_bytes(
     per_particle = sum(
         WIDTHS.get(name, number) * components(name, dimension) for name in trajectory.fields
     )
+    per_particle += PAIR * dimension * ("contact" in trajectory.fields)
     particles, _ = written(trajectory, groups)
     frames = len(trajectory.frames(steps))
     shrink = COMPRESSED if trajectory.compression else 1.0

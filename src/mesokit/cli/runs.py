@@ -161,8 +161,8 @@ def info(run: Path, as_json: bool) -> None:
     "path",
     type=FILE,
     required=True,
-    help="The file: .gsd, .lammpstrj, .xyz, .h5md, .dcd, .xtc, .trr or .data; of a lattice .xyz, "
-    ".vti or .png.",
+    help="The file: .gsd, .lammpstrj, .xyz, .h5md, .dcd, .xtc, .trr or .data; contacts of "
+    "grains: .csv or .local; of a lattice .xyz, .vti or .png.",
 )
 @click.option(
     "--states", metavar="A,B", help="Only sites in these states, such as all but empty ones (.xyz)."

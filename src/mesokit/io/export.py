@@ -12,8 +12,9 @@ from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.case.trajectory import Group, masses_and_kinds, names_and_diameters, written
 from mesokit.errors import CaseError, RunError
-from mesokit.io import site_files
+from mesokit.io import contact_files, site_files
 from mesokit.io.atomic import replacing
+from mesokit.io.contact_records import FIELD
 from mesokit.io.moments import Moment, Particles
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.site_files import Frames, SiteFrame, SiteWriter
@@ -25,7 +26,7 @@ Array = NDArray[Any]
 
 
 Reader = Callable[[], "TrajectoryReader | None"]
-Writer = Callable[[Path, Particles, Iterator[Moment]], None]
+Writer = Callable[[Path, Particles, Iterator[Any]], None]
 NO_IMAGES: Mapping[str, SiteWriter] = MappingProxyType({})
 
 
@@ -39,10 +40,10 @@ def export(
 ) -> Path:
     """Write all frames of a run to a file in the format of its ending; an old file is replaced.
 
-    Of sites, those in some `states` may be written alone; `images` are writers of pictures of
-    them by ending. Returns the file; of a series the one that lists it, or the first. Of a run that
-    has not ended, frames are those up to its last checkpoint. Raises CaseError for another ending,
-    RunError without frames of places.
+    Contacts of grains go to `.csv` or `.local`. Of sites, those in some `states` may be written
+    alone; `images` are writers of pictures of them by ending. Returns the file; of a series the one
+    that lists it, or the first. Of a run that has not ended, frames are those up to its last
+    checkpoint. Raises CaseError for another ending, RunError without frames of places.
     """
     path, group = Path(path), _lattice(case)
     if group is not None:
@@ -52,11 +53,16 @@ def export(
         return write_sites(path, sites, site_frames(directory, case, trajectory))
     if states is not None:
         raise CaseError(f"states = {show(list(states))}: only of sites of a lattice; leave it out")
-    write = _writer_for(path)
-    particles, moments = contents(directory, case, trajectory)
+    write = _writer_for(path, case)
+    what: Iterator[Any]
+    if path.suffix in contact_files.WRITERS:
+        _require(directory, case, FIELD)
+        particles, what = _contents(directory, case, trajectory)
+    else:
+        particles, what = contents(directory, case, trajectory)
     with replacing(path) as temporary:
         temporary.touch()  # with the usual permissions; gsd would give fewer
-        write(temporary, particles, moments)
+        write(temporary, particles, what)
     return path
 
 
@@ -112,7 +118,7 @@ def _known_ending(path: Path, known: Mapping[str, Any]) -> str:
     return path.suffix
 
 
-def _writer_for(path: Path) -> Writer:
+def _writer_for(path: Path, case: Case) -> Writer:
     from mesokit.io import gsd_file, h5md_file, mdanalysis, text_frames
 
     known: dict[str, Writer] = {
@@ -122,6 +128,7 @@ def _writer_for(path: Path) -> Writer:
         ".h5md": h5md_file.write,
         **dict.fromkeys(mdanalysis.FRAMES, mdanalysis.write_frames),
         ".data": _write_data,
+        **(contact_files.WRITERS if case.particles_have(FIELD) else {}),
     }
     _known_ending(path, known)
     if path.suffix == ".gsd":

@@ -2,7 +2,8 @@
 
 /h5md        version, author, creator
 /parameters  case (TOML) and provenance (JSON); units: what a reduced unit is in SI, if known
-/connectivity  bonds (bonds, 2): places, in the rows of particles, of those that are linked
+/connectivity  bonds (bonds, 2): places, in the rows of particles, of those that are linked; and
+             contacts of each frame, whose forces are under /contacts (see `h5md_contacts`)
 /particles   one group, such as fluid: box, position, velocity, spin (angular velocity), image with
              step, time and value; id, mass, species, and radius of spheres; of a lattice the
              state of each site (frames, sites), in the order of the axes of the box
@@ -31,8 +32,11 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.case.component import name_of
-from mesokit.case.trajectory import kinds_of, names_and_diameters
+from mesokit.case.trajectory import Trajectory, kinds_of, names_and_diameters
 from mesokit.io.atomic import replacing
+from mesokit.io.contact_records import FIELD
+from mesokit.io.h5md_contacts import REST, ContactSets, contacts_of, has_contacts
+from mesokit.io.h5md_contacts import UNITS as UNITS_OF_CONTACTS
 from mesokit.io.hdf5 import made, opened
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.seam.in_units import units_of
@@ -98,6 +102,8 @@ def frames(path: str | Path) -> Iterator[dict[str, NDArray[Any]]]:
         fields = [name for name in FIELDS if name in group]
         for index in range(len(clock["step"])):
             frame = {name: in_frames(group[name]["value"], index, name, d) for name in fields}
+            if has_contacts(file):
+                frame[FIELD] = contacts_of(file, index, d)
             yield {"step": clock["step"][index], "time": clock["time"][index], **frame}
 
 
@@ -159,11 +165,11 @@ def _kept(file: Any, path: str | Path) -> bool:
     if not Path(path).exists():
         return False
     with opened(path) as old:
-        for name in ("particles", "connectivity"):
+        for name in ("particles", "connectivity", REST):
             if name in old:
                 old.copy(name, file, expand_refs=False)
-        if "connectivity" in file:
-            file["connectivity/bonds"].attrs["particles_group"] = particles_of(file).ref
+        for linked in file.get("connectivity", {}).values():
+            linked.attrs["particles_group"] = particles_of(file).ref
         return "particles" in old
 
 
@@ -197,7 +203,7 @@ def _particles(
     group["step"] = steps
     group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = units["time"]
     sets = {}
-    for name in [name for name in kept.fields if name != "id"]:
+    for name in [name for name in kept.fields if name not in ("id", FIELD)]:
         deep = WIDTHS.get(name, (3,))
         packed: dict[str, Any] = {}
         if frames and n:
@@ -208,6 +214,7 @@ def _particles(
         sets[name] = element.create_dataset("value", (frames, n, *deep), dtype, **packed)
         if name in UNITS:
             sets[name].attrs["reduced_unit"] = units[name]
+    contacts = _contacts(file, case, group, kept)
     edges = _box(group, case, frames)
     # Frame by frame and in chunks of particles, so memory does not grow with the run. H5MD has
     # three components, so in 2D the missing one is 0.
@@ -215,6 +222,8 @@ def _particles(
         check()
         group["time"][index] = frame["time"]
         edges[index] = _edges(case, float(frame["time"]), edges.shape[1:])
+        if contacts is not None:
+            contacts.add(index, frame[FIELD])
         for name, data in sets.items():
             for start in range(0, n, CHUNK):
                 part = frame[name][start : start + CHUNK]
@@ -224,6 +233,15 @@ def _particles(
                     part = wide
                 data[index, start : start + len(part)] = part
     del group["step"], group["time"]  # the elements have linked them
+
+
+def _contacts(file: Any, case: Case, group: Any, kept: Trajectory) -> ContactSets | None:
+    """Datasets for the contacts of all frames, None where the trajectory has none."""
+    if FIELD not in kept.fields:
+        return None
+    units = {name: units_of(case).of(unit) for name, unit in UNITS_OF_CONTACTS.items()}
+    packed = {"compression": kept.compression or None, "shuffle": bool(kept.compression)}
+    return ContactSets(file, group, packed, kept.precision, units)
 
 
 def _identities(

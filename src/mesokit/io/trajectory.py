@@ -18,9 +18,12 @@ from mesokit.case.trajectory import Trajectory
 from mesokit.errors import RunError
 from mesokit.io.arrays_file import LARGE, load, one, save
 from mesokit.io.atomic import delete_folder
+from mesokit.io.contact_records import FIELD, records_of
 
 Frame = dict[str, Any]  # arrays, or what comes in pieces
 OWN = ("mass", "diameter")  # of each sphere, the same in all frames
+RAGGED = (FIELD,)  # entries that differ in length from frame to frame
+COUNT = "{}_number"  # of the rows of such an entry in each frame of a segment
 LARGEST = 64 * 2**20  # bytes of frames kept in memory
 
 
@@ -63,6 +66,7 @@ class TrajectoryWriter:
             "orientation": lambda: of.orientations(ids).astype(real),
             "site": lambda: _states(of.sites(ids)),
             "image": lambda: of.images(ids).astype(np.int32),
+            FIELD: lambda: records_of(of.contacts(), self.first, self.number, real),
         }
         fields = self.trajectory.fields
         frame: Frame = {name: read() for name, read in readings.items() if name in fields}
@@ -166,7 +170,12 @@ class TrajectoryWriter:
 
     def _write(self, frames: list[Frame]) -> None:
         path = self.folder / f"segment-{int(frames[0]['step']):015d}.npz"
-        stacked = {name: Stacked([frame[name] for frame in frames]) for name in frames[0]}
+        stacked: dict[str, Any] = {}
+        for name in frames[0]:
+            entries = [frame[name] for frame in frames]
+            stacked[name] = Joined(entries) if name in RAGGED else Stacked(entries)
+            if name in RAGGED:
+                stacked[COUNT.format(name)] = np.array([len(entry) for entry in entries], np.int64)
         save(path, stacked, self.here, folder=True)
 
 
@@ -181,6 +190,18 @@ class Stacked:
         """Its rows, some at a time."""
         for entry in self.entries:
             yield from entry.blocks() if hasattr(entry, "blocks") else [entry]
+
+
+class Joined:
+    """The rows of an entry of some frames as one array, frame after frame."""
+
+    def __init__(self, entries: Sequence[NDArray[Any]]) -> None:
+        self.entries, self.dtype = entries, entries[0].dtype
+        self.shape = (sum(len(entry) for entry in entries),)
+
+    def blocks(self) -> Iterator[NDArray[Any]]:
+        """Its rows, a frame at a time."""
+        yield from self.entries
 
 
 def _states(sites: NDArray[Any]) -> NDArray[np.int16]:
@@ -213,5 +234,8 @@ def _read(path: Path) -> Iterator[Frame]:
         arrays = load(path, LARGE)
     except Exception:
         raise RunError(f"{path}: damaged: it is not a whole segment of a trajectory") from None
+    for name in [name for name in RAGGED if name in arrays]:
+        ends = np.cumsum(arrays.pop(COUNT.format(name)))
+        arrays[name] = np.split(arrays[name], ends[:-1])
     for index in range(len(arrays["step"])):
         yield {name: array[index] for name, array in arrays.items()}

@@ -14,6 +14,9 @@ SYMBOLS = {
     "R": "$R$",
     "cosine": r"$\cos\theta$",
     "duration": "$t$",
+    "force": r"$f\,/\,\langle f\rangle$",
+    "mobilisation": r"$|\mathbf{t}|\,/\,\mu f$",
+    "contacts": "$z$",
 }
 NOISY = 0.3  # relative error above which a ratio says nothing
 
@@ -46,7 +49,17 @@ def draw(result: Result, ax: Any) -> None:
         ax.axvline(mean, color=COLOURS[1], ls="--", lw=1.2, label="mean")
     ax.set_xlim(*(edges[[0, -1]] if len(middle) > 1 else (0, edges[0] + edges[-1])))
     ax.set_ylim(bottom=0)
+    if result.extra.get("logarithmic"):
+        _logarithmic(ax, result)
     legend_above(ax)
+
+
+def _logarithmic(ax: Any, result: Result) -> None:
+    """A logarithmic axis of densities from half of the least that is not 0."""
+    some = result.value[result.value > 0]
+    if len(some):
+        ax.set_yscale("log")
+        ax.set_ylim(0.5 * some.min(), 2.0 * some.max())
 
 
 def draw_several(result: Result, figure: Any, ax: Any) -> None:

@@ -233,11 +233,12 @@ class RunFiles(Shown, Mapping[str, Result]):
         """Write the trajectory for another program, in the format of the ending.
 
         `.gsd` is for OVITO, HOOMD-blue and MDAnalysis; `.lammpstrj` and `.xyz` are text; `.h5md`,
-        `.dcd`, `.xtc` and `.trr` have all frames, `.data` (LAMMPS) the last. Sites of a lattice go
-        to `.xyz`, of some `states` or all; to `.vti`, a file for each frame for ParaView, listed in
-        a file `.pvd`; or to `.png`, an image of each frame with so many `pixels` (1 unless said)
-        along each side of a site. Raises CaseError for any other, RunError without frames of
-        places.
+        `.dcd`, `.xtc` and `.trr` have all frames, `.data` (LAMMPS) the last. Contacts of grains go
+        to `.csv`, a table, or to `.local`, a dump of local data as LAMMPS has them. Sites of a
+        lattice go to `.xyz`, of some `states` or all; to `.vti`, a file for each frame for
+        ParaView, listed in a file `.pvd`; or to `.png`, an image of each frame with so many
+        `pixels` (1 unless said) along each side of a site. Raises CaseError for any other, RunError
+        without frames of places.
         """
         from mesokit.io.export import export
 

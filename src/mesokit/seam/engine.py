@@ -186,6 +186,35 @@ class RunningSpheres(Particles, Protocol):
     def wall_impulse(self) -> Array: ...
 
 
+class ContactsNow(Protocol):
+    """All contacts at one time: pairs (m, 2) of particle numbers, of a wall -1 less the number of
+    its surface; normals (m, d) from the second to the first, forces (m, d) on the first, places
+    (m, d) in the box, and gaps (m,). Their parts along normals and surfaces are (m,)."""
+
+    @property
+    def pairs(self) -> Integers: ...
+    @property
+    def normals(self) -> Array: ...
+    @property
+    def forces(self) -> Array: ...
+    @property
+    def places(self) -> Array: ...
+    @property
+    def gaps(self) -> Array: ...
+    @property
+    def normal_forces(self) -> Array: ...
+    @property
+    def tangential_forces(self) -> Array: ...
+    @property
+    def at_walls(self) -> NDArray[np.bool_]: ...
+
+
+class TouchingSpheres(RunningSpheres, Protocol):
+    """One more reading of an engine of spheres whose contacts last."""
+
+    def contacts(self) -> ContactsNow: ...
+
+
 class CollidingSpheres(RunningSpheres, Protocol):
     """More readings of an engine of event-driven dynamics.
 

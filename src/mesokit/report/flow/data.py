@@ -11,6 +11,22 @@ Array = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True)
+class Links:
+    """Contacts of spheres at one time, as lines.
+
+    Parameters
+    ----------
+    ends: (m, 2, 2) in the picture, of the first sphere and of its partner, or the place at a wall.
+    forces: (m,) along the normals, positive where the two repel.
+    nearness: (m,) from 0 (at the back of the box) to 1 along the third axis; all 1 in 2D.
+    """
+
+    ends: Array
+    forces: Array
+    nearness: Array
+
+
+@dataclass(frozen=True)
 class Spheres:
     """Spheres at one time.
 
@@ -28,6 +44,7 @@ class Spheres:
     note: what of the box is shown.
     remark: what colours do not show of this time.
     plates: that are not where they are at rest, see `moving_plates`.
+    links: function that returns the contacts of this time, None where they are not known.
     """
 
     places: Array
@@ -42,6 +59,7 @@ class Spheres:
     note: str = ""
     plates: tuple[Any, ...] = ()
     remark: str = ""
+    links: Callable[[], Links] | None = None
 
     def seen(
         self, low: tuple[float, float], high: tuple[float, float]

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
-from mesokit.report.flow import birds, disks, particles, quiver, sites, streamlines
+from mesokit.report.flow import birds, disks, force_chains, particles, quiver, sites, streamlines
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.maps import LINES, density, speed, vorticity
 from mesokit.report.flow.region import Region
@@ -19,8 +19,8 @@ from mesokit.report.flow.source import Found
 class Panel(Protocol):
     """One panel of a picture: a module, or an object of a class.
 
-    NEEDS: "velocity", "density", "particles", "spheres", "headings" or "sites"; TITLE: its name
-    where several are side by side.
+    NEEDS: "velocity", "density", "particles", "spheres", "contacts", "headings" or "sites"; TITLE:
+    its name where several are side by side.
     """
 
     NEEDS: str
@@ -44,6 +44,7 @@ KINDS: dict[str, tuple[Panel, ...]] = {
     "speed": (speed,),
     "vorticity": (vorticity,),
     "disks": (disks,),
+    "force-chains": (force_chains,),
     "flock": (birds,),
     "sites": (sites,),
     "four": (quiver, streamlines, particles, density),
@@ -97,6 +98,12 @@ def panels_of(kind: str, case: Case, colour: str | None = None) -> tuple[Panel, 
         raise CaseError(
             f"kind = {show(kind)}: particles of method {show(case.run.method)} have no size; "
             "expected 'particles', or another kind"
+        )
+    touch = any(panel.NEEDS == "contacts" for panel in KINDS[kind])
+    if touch and not case.particles_have("contact"):
+        raise CaseError(
+            f"kind = {show(kind)}: particles of method {show(case.run.method)} have no contacts "
+            "that last; expected another kind"
         )
     group = lattice_group(case)
     if group is not None:

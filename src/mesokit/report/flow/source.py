@@ -24,16 +24,24 @@ WORDS = {
     "density": "densities",
     "particles": "positions of particles",
     "spheres": "positions of spheres",
+    "contacts": "contacts of spheres",
     "headings": "positions and velocities of particles",
     "sites": "states of sites",
 }
-AT_ONCE = ("particles", "spheres", "headings", "sites")  # shown at one time, and not as a mean
+AT_ONCE = (
+    "particles",
+    "spheres",
+    "contacts",
+    "headings",
+    "sites",
+)  # shown at one time, and not as a mean
 FRAMES = '[[observe]] quantity = "flow-frames"'
 REMEDY = {
     "velocity": FRAMES,
     "density": FRAMES,
     "particles": f"{FRAMES} with particles > 0, or [trajectory]",
     "spheres": "[trajectory]",
+    "contacts": '[trajectory] with fields = ["position", "contact"]',
     "headings": '[trajectory] with fields = ["position", "velocity"]',
     "sites": '[trajectory] with fields = ["site"]',
 }

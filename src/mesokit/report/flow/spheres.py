@@ -2,8 +2,9 @@
 
 import functools
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from mesokit.case.case import Case
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.caption import in_cells
 from mesokit.report.flow.colouring import Frame, chosen
-from mesokit.report.flow.data import Array, Flow, Spheres
+from mesokit.report.flow.data import Array, Flow, Links, Spheres
 from mesokit.report.flow.region import View
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.state import State
@@ -33,12 +34,11 @@ def from_the_side(gravity: Sequence[float]) -> tuple[str, str]:
 class SphereSource:
     """The frames of a trajectory of spheres."""
 
-    gives = frozenset({"spheres"})
-
     def __init__(self, case: Case, reader: TrajectoryReader | State, view: View) -> None:
         self.case, self.reader, self.view = case, reader, view
         self.axes, self.time = view.axes or ("x", "y"), reader.time
         self.whole = np.arange(len(reader))
+        self.gives = frozenset(["spheres", *["contacts"] * ("contact" in reader.fields)])
         self.setting = Setting.of(case, self.axes)
         self.third = next((k for k in range(3) if k not in self.setting.columns), 2)
         first, second = self.setting.columns
@@ -64,10 +64,34 @@ class SphereSource:
             time=float(self.time[frame]),
             plates=method_of(self.case).enclosure.moving_plates(self.case, float(self.time[frame])),
             remark=colouring.remark(now) if colouring else "",
+            links=functools.partial(self._links, read) if "contacts" in self.gives else None,
         )
         if box.dimension == 3:
             spheres = self._deep(spheres, self.towards * position[:, self.third])
         return replace(self.setting.flow(), spheres=spheres)
+
+    def _links(self, read: Mapping[str, Any]) -> Links:
+        """The contacts of a frame, those of spheres that are shown.
+
+        A line starts at a centre and follows the normal, so it needs no images of the other.
+        """
+        records, position = read["contact"], np.asarray(read["position"], float)
+        assert self.reader.diameter is not None
+        radii, first = 0.5 * self.reader.diameter, int(self.reader.id[0]) if len(position) else 0
+        one, other = records["pair"].T - first
+        between, normal = records["pair"][:, 1] >= 0, records["normal"].astype(float)
+        length = radii[one] + np.where(between, radii[other], 0.0) + records["gap"]
+        starts = position[one]
+        ends = np.stack([starts, starts - length[:, None] * normal], axis=1)
+        near, kept = np.ones(len(records)), np.ones(len(records), bool)
+        if self.case.box.dimension == 3:
+            depth = ends[:, :, self.third].mean(axis=1)
+            share = depth / float(self.case.box.size[self.third])
+            near = np.clip(share if self.towards > 0 else 1 - share, 0.0, 1.0)
+            if self.view.at is not None:
+                kept = self.towards * depth <= self.towards * self.view.at
+        forces = (records["force"] * normal).sum(axis=1)
+        return Links(ends[kept][:, :, self.setting.columns], forces[kept], near[kept])
 
     def _deep(self, spheres: Spheres, depth: Array) -> Spheres:
         """With their depths; behind a plane, if the picture is of a place on the third axis."""

@@ -7,9 +7,23 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.case.trajectory import masses_and_kinds
+from mesokit.io.contact_records import FIELD, records_of
 
 MOST = 20_000  # particles of the first group, evenly picked where there are more
 READ = {"position": "positions", "velocity": "velocities", "spin": "spins", "site": "sites"}
+
+
+class Now(dict[str, Any]):
+    """The fields of a frame; contacts are found when they are drawn, since that compiles code."""
+
+    def __init__(self, fields: dict[str, Any], engine: Any) -> None:
+        super().__init__(fields)
+        self.engine = engine
+
+    def __missing__(self, name: str) -> Any:
+        if name != FIELD:
+            raise KeyError(name)
+        return records_of(self.engine.contacts(), 0, self.engine.n, float)
 
 
 class State:
@@ -24,6 +38,7 @@ class State:
         self.fields: tuple[str, ...] = ("position",)
         if spheres:
             self.fields = ("position", "velocity", "spin")
+            self.fields += (FIELD,) * case.particles_have(FIELD)
         elif case.particles_have("heading"):
             self.fields = ("position", "velocity")
         elif case.particles_have("site"):
@@ -45,4 +60,6 @@ class State:
 
     def __getitem__(self, index: int) -> dict[str, Any]:
         """The frame."""
-        return {name: getattr(self.engine, READ[name])(self.id) for name in self.fields}
+        known = [name for name in self.fields if name in READ]
+        read = {name: getattr(self.engine, READ[name])(self.id) for name in known}
+        return Now(read, self.engine)

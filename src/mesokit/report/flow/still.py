@@ -38,9 +38,9 @@ def picture(
     ----------
     case, results, trajectory: of the run; a `State` of its engine is a trajectory of one frame.
     kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity", "four", of
-        spheres "disks", of birds "flock", of sites "sites", "space-time", "profiles", "heights" or
-        "occupied"; unless said that of the method, else "four", or what the
-        run has kept enough for.
+        spheres "disks" and "force-chains", of birds "flock", of sites "sites", "space-time",
+        "profiles", "heights" or "occupied"; unless said that of the method, else "four", or what
+        the run has kept enough for.
     choices: the rest.
     region: ((x0, x1), (y0, y1)) in cells, the whole box unless said.
     window: (t0, t1), the times averaged over, all unless said.

@@ -19,7 +19,10 @@ def groups(case: Case) -> tuple[Group, ...]:
         Kind(kind.mean_mass(box.dimension), number, kind.name or "", kind.diameter * scale)
         for kind, number in zip(section.kinds, section.counts(box), strict=True)
     )
-    return (Group(NAME, kinds, HAVE, kT=float(section.kT), picture="disks"),)
+    have = (*HAVE, "contact") if section.touching else HAVE
+    kept = () if case.trajectory is None else case.trajectory.fields
+    picture = "force-chains" if {"position", "contact"} <= {*kept} else "disks"
+    return (Group(NAME, kinds, have, kT=float(section.kT), picture=picture),)
 
 
 def ids_of_kind(case: Case, kind: int | str | None) -> NDArray[np.int64]:

@@ -85,6 +85,16 @@ class Spheres:
         return None
 
     @property
+    def touching(self) -> bool:
+        """Whether contacts last, and have forces that an engine lists (`contacts`)."""
+        return False
+
+    @property
+    def pair_friction(self) -> float:
+        """Coulomb's coefficient of contacts between two of them, 0 without."""
+        return 0.0
+
+    @property
     def energy_source(self) -> Heating | None:
         """The source of energy at fixed times, None without."""
         return None

@@ -61,6 +61,14 @@ class RigidSpheres(Spheres):
     )
 
     @property
+    def touching(self) -> bool:
+        return True
+
+    @property
+    def pair_friction(self) -> float:
+        return self.contact.friction
+
+    @property
     def turns(self) -> bool:
         """Whether friction turns grains."""
         return self.contact.turns

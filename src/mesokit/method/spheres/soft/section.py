@@ -73,6 +73,14 @@ class SoftSpheres(Spheres):
     )
 
     @property
+    def touching(self) -> bool:
+        return isinstance(self.pair, ContactLaw)
+
+    @property
+    def pair_friction(self) -> float:
+        return self.pair.friction if isinstance(self.pair, ContactLaw) else 0.0
+
+    @property
     def thermostatted(self) -> bool:
         return self.thermostat is not None
 

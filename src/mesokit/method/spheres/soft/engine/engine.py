@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import RunError
+from mesokit.method.spheres.common.contacts.now import Contacts, in_order
 from mesokit.method.spheres.common.engine import SphereEngine
 from mesokit.method.spheres.common.start.first_state import Started
 from mesokit.method.spheres.common.walls import surfaces_of
@@ -116,6 +117,17 @@ class SoftEngine(SphereEngine):
     def coordination(self) -> NDArray[np.int64]:
         """Number of spheres and walls that touch each sphere, (n,); 0 with a potential."""
         return self.system.readings(self.time)[:, groups.TOUCHING]
+
+    def contacts(self) -> Contacts:
+        """All contacts as they are now; none with a potential.
+
+        Forces are those of the present places, velocities and springs. Dashpots make them differ
+        from `forces`, which steps have taken from velocities of the half step.
+        """
+        pairs, values = self.system.contacts(self.time)
+        walls = pairs[:, 1] < 0
+        pairs[walls, 1] = -1 - self.surfaces[1][-1 - pairs[walls, 1]]
+        return in_order(pairs, values, self.dimension, lambda places: self.system.inside(places)[0])
 
     @property
     def wall_impulse(self) -> Array:

@@ -11,11 +11,13 @@ from mesokit.kernels.packing import Packing
 from mesokit.loops.neighbours import GAP
 from mesokit.method.spheres.common.contacts.groups import INVERSE, NEVER, REACH, WITHIN_THREAD
 from mesokit.method.spheres.common.contacts.listed import Listed, ListedSpheres, Others
+from mesokit.method.spheres.common.contacts.now import COLUMNS
 from mesokit.method.spheres.common.contacts.remembered import pairs_of, remember
 from mesokit.method.spheres.common.contacts.taken import all_taken, in_numbers
 from mesokit.method.spheres.common.walls import AMPLITUDE, AXIS, KIND, PLACE, PLANE, SPEED
 from mesokit.method.spheres.soft.engine import groups
 from mesokit.method.spheres.soft.engine.acting import measure_all
+from mesokit.method.spheres.soft.engine.contact.collect import Rows, collect_all
 from mesokit.method.spheres.soft.engine.contact.room import rooms
 from mesokit.method.spheres.soft.engine.groups import Bodies, Motion, World
 from mesokit.method.spheres.soft.engine.step import advance, find_forces
@@ -194,6 +196,18 @@ class SoftSystem(ListedSpheres):
         readings = np.zeros((self.n, groups.READINGS), np.int64)
         self.worker.run(measure_all, time, self.given.law, self.world, readings)
         return self.by_number(readings)
+
+    def contacts(self, time: float) -> tuple[NDArray[np.int64], Array]:
+        """Pairs (m, 2) and values (m, 10) of all contacts, in no order; see `collect.Rows`."""
+        readings = np.zeros((self.n, groups.READINGS), np.int64)
+        self.worker.run(measure_all, time, self.given.law, self.world, readings)
+        # A sphere writes no more rows than it has contacts; rows that it leaves out stay -1.
+        touching = readings[:, groups.TOUCHING]
+        begin, m = np.cumsum(touching) - touching, int(touching.sum())
+        rows = Rows(begin, np.full((m, 2), -1, np.int64), np.zeros((m, COLUMNS)))
+        self.worker.run(collect_all, time, self.given.law, self.world, rows)
+        written = rows.pairs[:, 0] >= 0
+        return rows.pairs[written], rows.values[written]
 
     def state(self) -> dict[str, NDArray[Any]]:
         """All arrays that the next step depends on, by particle number."""
