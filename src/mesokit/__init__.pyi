@@ -199,6 +199,9 @@ from mesokit.method.spheres.common.observe.height_profile import HeightProfile a
 from mesokit.method.spheres.common.observe.kind_temperature import (
     KindTemperature as KindTemperature,
 )
+from mesokit.method.spheres.common.observe.packing_fraction import (
+    PackingFraction as PackingFraction,
+)
 from mesokit.method.spheres.common.observe.velocity_cumulant import (
     VelocityCumulant as VelocityCumulant,
 )
