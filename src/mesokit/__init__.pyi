@@ -199,9 +199,11 @@ from mesokit.method.spheres.common.observe.height_profile import HeightProfile a
 from mesokit.method.spheres.common.observe.kind_temperature import (
     KindTemperature as KindTemperature,
 )
+from mesokit.method.spheres.common.observe.outflow import Outflow as Outflow
 from mesokit.method.spheres.common.observe.packing_fraction import (
     PackingFraction as PackingFraction,
 )
+from mesokit.method.spheres.common.observe.shear_rheology import ShearRheology as ShearRheology
 from mesokit.method.spheres.common.observe.velocity_cumulant import (
     VelocityCumulant as VelocityCumulant,
 )

@@ -23,7 +23,7 @@ from mesokit.statistics import Blocks, TimeSeries
 
 AMOUNTS = ("number", "mass", "volume")
 WORDS = {"number": "grains", "mass": "mass", "volume": "volume"}
-PIECES, FEWEST = 40, 4  # points of the figure; samples whose scatter is an error bar
+PIECES, FEWEST = 20, 4  # points of the figure; samples whose scatter is an error bar
 USUAL_FRACTION = {2: 0.80, 3: 0.60}  # of a bed, for the law of Beverloo
 SHARES = 0.1, 0.9  # of what passes, between which a silo flows
 
@@ -181,7 +181,9 @@ class OutflowAccumulator(BlockAccumulator):
             each = rows[:, part].reshape(-1, 3)
             values.append(each.mean(axis=0))
             known = len(each) >= FEWEST
-            spread = each.std(axis=0, ddof=1) / math.sqrt(len(each)) if known else np.full(3, np.nan)
+            spread = (
+                each.std(axis=0, ddof=1) / math.sqrt(len(each)) if known else np.full(3, np.nan)
+            )
             errors.append(spread)
             times.append(float(time[part].mean()))
         shape = (len(times), 3)
@@ -210,7 +212,11 @@ class OutflowAccumulator(BlockAccumulator):
 
     def comparisons(self, law: float) -> Iterator[Comparison]:
         """Mean rates, what has passed, and the rate of mass while a silo flows."""
-        units, value, error = units_of(self.case.box.dimension), self.blocks.mean(), self.blocks.error()
+        units, value, error = (
+            units_of(self.case.box.dimension),
+            self.blocks.mean(),
+            self.blocks.error(),
+        )
         for k, of in enumerate(AMOUNTS):
             yield Comparison(f"mean rate of {WORDS[of]}", value[k], error[k], unit=units[of])
         yield Comparison("grains that passed", self.passed[0], math.nan)
@@ -233,7 +239,6 @@ class OutflowAccumulator(BlockAccumulator):
             for rate in run[low + 1 : high + 1, 1]:
                 found.add(rate)
         return found
-
 
 
 def units_of(dimension: int) -> dict[str, str]:
