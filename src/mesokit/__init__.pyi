@@ -211,6 +211,7 @@ from mesokit.method.spheres.common.observe.velocity_cumulant import (
     VelocityCumulant as VelocityCumulant,
 )
 from mesokit.method.spheres.common.observe.wall_force import WallForce as WallForce
+from mesokit.method.spheres.common.observe.wall_load import WallLoad as WallLoad
 from mesokit.method.spheres.common.start.from_file import FileStart as FileStart
 from mesokit.method.spheres.common.start.from_file import RunStart as RunStart
 from mesokit.method.spheres.common.start.lattice import LatticeStart as LatticeStart

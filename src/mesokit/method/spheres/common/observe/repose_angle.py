@@ -22,6 +22,7 @@ FEWEST = 4  # cells of a flank
 ACROSS = 2.0  # mean diameters: cells of a ridge along its crest
 SECTORS = 4  # of a cone
 LATE = 0.25  # of the samples
+PIECES = 40  # points of the figure
 
 
 @component
@@ -116,11 +117,13 @@ class ReposeAngleAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """The mean angle in time, and that at the end."""
-        each = self.series.each()  # (runs, n, flanks)
-        flanks = each.transpose(0, 2, 1).reshape(-1, each.shape[1])
-        value, error = scatter(flanks)
+        each, time = self.series.each(), self.series.time()  # (runs, n, flanks)
+        flanks = each.transpose(0, 2, 1).reshape(-1, len(time))
+        parts = np.array_split(np.arange(len(time)), max(1, min(PIECES, len(time))))
+        pieces = [scatter(mean_of(flanks[:, part])) for part in parts if len(part)]
+        value, error = np.reshape(pieces, (-1, 2)).T
         return self.report(
-            {"time": self.series.time()},
+            {"time": np.array([time[part].mean() for part in parts if len(part)])},
             (value, error),
             self.comparisons(flanks),
             samples=self.samples,
@@ -128,11 +131,10 @@ class ReposeAngleAccumulator(BlockAccumulator):
 
     def comparisons(self, flanks: Array) -> Iterator[Comparison]:
         """The angle at the end, of the last quarter of the samples, and the mean of all."""
-        last = flanks[:, -max(1, math.ceil(LATE * flanks.shape[1])) :]
-        known = last[np.isfinite(last).all(axis=1)].mean(axis=1)
-        value, error = scatter(known[:, None])
-        note = "" if len(known) else "no flank has four cells or more"
-        yield Comparison("angle at the end", value[0], error[0], unit="degrees", note=note)
+        last = mean_of(flanks[:, -max(1, math.ceil(LATE * flanks.shape[1])) :])
+        value, error = scatter(last)
+        note = "no flank has four cells or more" if math.isnan(value) else ""
+        yield Comparison("angle at the end", value, error, unit="degrees", note=note)
         mean = float(self.blocks.mean()), float(self.blocks.error())
         yield Comparison("mean angle", *mean, unit="degrees")
 
@@ -168,12 +170,18 @@ def angle(x: Array, heights: Array, peak: float) -> float:
     return math.degrees(math.atan(abs(float(np.median(slopes)))))
 
 
-def scatter(rows: Array) -> tuple[Array, Array]:
-    """Means over rows, where known, and their standard errors by how these scatter."""
+def mean_of(rows: Array) -> Array:
+    """Means of rows (n, m) over what is known of each; nan where nothing is."""
     known = np.isfinite(rows)
-    count = known.sum(axis=0)
-    safe = np.maximum(count, 1)
-    mean = np.where(known, rows, 0.0).sum(axis=0) / safe
-    square = np.where(known, (rows - mean) ** 2, 0.0).sum(axis=0)
-    error = np.sqrt(square / np.maximum(count - 1, 1) / safe)
-    return np.where(count > 0, mean, np.nan), np.where(count > 1, error, np.nan)
+    count = known.sum(axis=1)
+    total = np.where(known, rows, 0.0).sum(axis=1)
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def scatter(numbers: Array) -> tuple[float, float]:
+    """Mean of the numbers that are known, and its standard error by how these scatter."""
+    known = numbers[np.isfinite(numbers)]
+    if not len(known):
+        return math.nan, math.nan
+    spread = float(known.std(ddof=1)) / math.sqrt(len(known)) if len(known) > 1 else math.nan
+    return float(known.mean()), spread

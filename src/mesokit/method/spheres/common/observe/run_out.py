@@ -33,7 +33,7 @@ class RunOut(OfSpheres):
     """
 
     quantity: Literal["run-out"] = tag("run-out")
-    drawing, value_label = "path", "length and height"
+    drawing, value_label = "path", "extent of the column"
     units: ClassVar[dict[str, str]] = {"value": "a", "time": "tau", "of": ""}
     sides: Literal["lower", "upper", "both", "round"] = param(
         "lower",
