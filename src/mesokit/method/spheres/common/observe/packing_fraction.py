@@ -87,7 +87,9 @@ class PackingFractionAccumulator(BlockAccumulator):
         pull = pull_axis(case)
         usual = 1 if pull is None else pull
         self.axis = usual if observable.axis is None else AXES.index(observable.axis)
-        self.edges = np.linspace(*self.region[self.axis], observable.bins + 1)
+        self.edges = np.linspace(
+            self.region[self.axis, 0], self.region[self.axis, 1], observable.bins + 1
+        )
         self.pull = pull if observable.interior else None
         self.blocks = Blocks((observable.bins + 1 + observable.interior,))
 

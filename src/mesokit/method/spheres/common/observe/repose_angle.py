@@ -12,7 +12,7 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.observe.bed_surface import heights_of, horizontal
 from mesokit.method.spheres.common.observe.protocol import OfSpheres
-from mesokit.seam.engine import RunningSpheres
+from mesokit.seam.engine import Integers, RunningSpheres
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
@@ -92,7 +92,7 @@ class ReposeAngleAccumulator(BlockAccumulator):
         if np.isfinite(angles).any():
             self.blocks.add(np.nanmean(angles))
 
-    def of_ridge(self, x: Array, strip: Array, top: Array, cell: float) -> list[float]:
+    def of_ridge(self, x: Array, strip: Integers, top: Array, cell: float) -> list[float]:
         """Angles of both flanks; heights are means over the cells along the crest."""
         column = np.floor(x / cell).astype(np.int64)
         at, heights = highest(column, strip, top)
@@ -118,7 +118,8 @@ class ReposeAngleAccumulator(BlockAccumulator):
     def result(self) -> Result:
         """The mean angle in time, and that at the end."""
         each, time = self.series.each(), self.series.time()  # (runs, n, flanks)
-        flanks = each.transpose(0, 2, 1).reshape(-1, len(time))
+        runs, samples, number = each.shape
+        flanks = each.transpose(0, 2, 1).reshape(runs * number, samples)
         parts = np.array_split(np.arange(len(time)), max(1, min(PIECES, len(time))))
         pieces = [scatter(mean_of(flanks[:, part])) for part in parts if len(part)]
         value, error = np.reshape(pieces, (-1, 2)).T
@@ -139,7 +140,7 @@ class ReposeAngleAccumulator(BlockAccumulator):
         yield Comparison("mean angle", *mean, unit="degrees")
 
 
-def highest(column: Array, strip: Array, top: Array) -> tuple[Array, Array]:
+def highest(column: Integers, strip: Integers, top: Array) -> tuple[Integers, Array]:
     """Columns that have grains, in order, and the mean over their strips of the highest point.
 
     >>> highest(np.array([3, 3, 1]), np.array([0, 0, 0]), np.array([2.0, 5.0, 1.0]))

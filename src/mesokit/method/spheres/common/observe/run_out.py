@@ -35,10 +35,11 @@ class RunOut(OfSpheres):
     quantity: Literal["run-out"] = tag("run-out")
     drawing, value_label = "path", "extent of the column"
     units: ClassVar[dict[str, str]] = {"value": "a", "time": "tau", "of": ""}
-    sides: Literal["lower", "upper", "both", "round"] = param(
-        "lower",
+    sides: Literal["lower", "upper", "both", "round"] | None = param(
+        None,
         doc="where the column stands: at the lower or the upper end of the axis; or free, when it "
-        "spreads to 'both' sides, and its length is half of all; or 'round' about its axis in 3D",
+        "spreads to 'both' sides, and its length is half of all; or 'round' about its axis in 3D "
+        "('lower' with plates along the axis, else 'both', unless said)",
     )
     axis: Axis | None = param(None, doc="axis of the front (the first horizontal one unless said)")
     gap: float | None = param(
@@ -62,6 +63,11 @@ class RunOut(OfSpheres):
                 f"sides = {show(self.sides)}: expected plates along {letter}, or sides = 'both'"
             )
 
+    def spreads(self, case: Case) -> str:
+        """The sides to which the column spreads."""
+        _, along = horizontal(case, self.axis, "run-out")
+        return self.sides or ("lower" if along in closed_axes(case) else "both")
+
 
 @accumulator_of(RunOut)
 class RunOutAccumulator(Samples):
@@ -75,6 +81,7 @@ class RunOutAccumulator(Samples):
         super().prepare()
         case = self.case
         self.pull, self.along = horizontal(case, self.observable.axis, "run-out")
+        self.sides = self.observable.spreads(case)
         closed, size = closed_axes(case), np.array(case.box.size, float)
         self.period = np.where([k in closed for k in range(len(size))], 0.0, size)
         self.start, self.middle = np.full(2, np.nan), np.full(case.box.dimension, np.nan)
@@ -96,7 +103,7 @@ class RunOutAccumulator(Samples):
 
     def length(self, places: Array, radius: Array) -> float:
         """How far grains reach."""
-        x, sides = places[:, self.along], self.observable.sides
+        x, sides = places[:, self.along], self.sides
         if sides == "lower":
             return float((x + radius).max())
         if sides == "upper":
@@ -112,7 +119,7 @@ class RunOutAccumulator(Samples):
         """What the law was measured of."""
         if self.case.box.dimension == 2:
             return "disks"
-        return "cylinder" if self.observable.sides == "round" else "slot"
+        return "cylinder" if self.sides == "round" else "slot"
 
     def result(self) -> Result:
         """Both in time, and how far the column has run."""

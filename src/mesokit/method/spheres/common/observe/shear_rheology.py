@@ -196,9 +196,9 @@ class ShearRheologyAccumulator(BlockAccumulator):
         stress = found.scalar(sign * shear, sign * one[SHEAR])
         yield Comparison("shear stress", *stress, unit=unit)
         yield Comparison("pressure", *found.scalar(pressure, one[PRESSURE]), unit=unit)
-        law, inertial = "", math.nan
+        law, inertial, (size, density) = "", math.nan, map(float, self.grain)
         if pressure > 0:
-            inertial = float(theory.inertial_number(rate, pressure, *self.grain, d))
+            inertial = float(theory.inertial_number(rate, pressure, size, density, d))
             ratio = abs(inertial / rate) if rate else 0.0
             gradient = sign * ratio * one[RATE] - 0.5 * inertial / pressure * one[PRESSURE]
             yield Comparison("inertial number", *found.scalar(inertial, gradient))
