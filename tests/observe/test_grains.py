@@ -1,11 +1,13 @@
 """Observables of grains: packings, flows, heaps, columns and silos whose numbers are known."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mesokit import (
+    Box,
     EnergyBudget,
     Outflow,
     PackingFraction,
@@ -303,3 +305,27 @@ def test_the_books_of_energy_close(counted):
     assert books is None or (books.measured == pytest.approx(1.0) and books.expected == 1.0)
     names = result.x["of"].tolist()
     assert ("lost to friction" in names) == counted
+
+
+def test_a_sheared_box_gives_stress_ratio_by_motion_and_contacts():
+    observable = ShearRheology()
+    plain = hard([], number=100, size=(10, 20))
+    box = Box([10, 20], shear_rate=-0.05)
+    case = SimpleNamespace(box=box, walls=(), spheres=plain.spheres, particles=100)
+    rows = np.random.default_rng(6).random((100, 2)) * [10, 20]
+    spheres = Placed(plain, lambda time: rows)
+    spheres.v = np.stack([-0.05 * (rows[:, 1] - 10), np.zeros(100)], 1)
+    spheres.stress = {
+        "kinetic": np.array([[-7.0, -0.1], [-0.1, -0.5]]),
+        "pair": np.array([[-2.0, -0.4], [-0.4, -1.5]]),
+    }
+    accumulator = observable.accumulator(case)
+    for _ in range(20):
+        accumulator.observe(spheres)
+    found = by_name(accumulator.result())
+    assert found["shear rate"].measured == pytest.approx(-0.05)
+    assert found["shear rate"].expected == -0.05
+    assert found["pressure"].measured == pytest.approx(2.0)
+    assert found["shear stress over pressure"].measured == pytest.approx(0.25)
+    known = whole(0.5 * spheres.diameters(), 2).sum() / 200
+    assert found["packing fraction"].measured == pytest.approx(known, rel=0.01)

@@ -10,7 +10,6 @@ from mesokit.case.component import component, tag
 from mesokit.geometry import walls
 from mesokit.method.spheres.common.observe.protocol import OfSpheres, Samples
 from mesokit.seam.engine import RunningSpheres
-from mesokit.seam.method import method_of
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
@@ -105,9 +104,12 @@ class EnergyBudgetAccumulator(Samples):
         return "less the work of a bath" if heated else ""
 
     def conserved(self) -> bool:
-        """Whether contacts keep all energy, as far as theory knows."""
-        cooling = method_of(self.case).expected.get("granular-temperature")
-        if cooling is None:
-            return False
-        known = cooling(self.case, self.observable).known
-        return bool(known.restitution == 1 and known.contact_time == 0)
+        """Whether collisions that take no time keep all energy."""
+        rule = self.case.spheres.instant_collision
+        surfaces = [surface for _, surface, _ in walls.surfaces(self.case)]
+        lossy = any(
+            c.restitution not in (None, 1.0) or c.tangential not in (None, -1.0, 1.0) or c.friction
+            for c in (surface.contact for surface in surfaces)
+            if c is not None
+        )
+        return rule is not None and rule.elastic and not lossy
