@@ -20,7 +20,7 @@ from mesokit import (
     WallLoad,
     theory,
 )
-from mesokit.method.spheres.common.observe.cut_volumes import in_slabs, whole
+from mesokit.method.spheres.common.observe.shared.cut_volumes import in_slabs, whole
 from tests.helpers.comparisons import by_name, comparison
 from tests.helpers.fake_spheres import FakeSpheres, hard
 

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, param, tag
 from mesokit.geometry.walls import closed_axes
-from mesokit.method.spheres.common.observe.bed_surface import clusters
 from mesokit.method.spheres.common.observe.protocol import OfSpheres
+from mesokit.method.spheres.common.observe.shared.bed_surface import clusters
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result

@@ -13,8 +13,8 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
 from mesokit.geometry.walls import closed_axes
-from mesokit.method.spheres.common.observe.cut_volumes import whole
 from mesokit.method.spheres.common.observe.protocol import OfSpheres, pull_axis
+from mesokit.method.spheres.common.observe.shared.cut_volumes import whole
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.estimate import Array
 from mesokit.seam.observable import BlockAccumulator, accumulator_of

@@ -10,8 +10,8 @@ from mesokit.case.box import Axis
 from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
-from mesokit.method.spheres.common.observe.bed_surface import heights_of, horizontal
 from mesokit.method.spheres.common.observe.protocol import OfSpheres
+from mesokit.method.spheres.common.observe.shared.bed_surface import heights_of, horizontal
 from mesokit.seam.engine import Integers, RunningSpheres
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result

@@ -12,8 +12,12 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.walls import closed_axes
-from mesokit.method.spheres.common.observe.bed_surface import heights_of, horizontal, main_mass
 from mesokit.method.spheres.common.observe.protocol import OfSpheres, Samples
+from mesokit.method.spheres.common.observe.shared.bed_surface import (
+    heights_of,
+    horizontal,
+    main_mass,
+)
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.observable import accumulator_of
 from mesokit.seam.result import NOT_STEADY, Array, Comparison, Result, joined

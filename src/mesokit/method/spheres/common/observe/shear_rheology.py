@@ -13,8 +13,8 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.walls import closed_axes
-from mesokit.method.spheres.common.observe.cut_volumes import in_slabs, whole, with_images
 from mesokit.method.spheres.common.observe.protocol import OfSpheres
+from mesokit.method.spheres.common.observe.shared.cut_volumes import in_slabs, whole, with_images
 from mesokit.seam.engine import Array, RunningSpheres
 from mesokit.seam.estimate import Estimate, of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, accumulator_of

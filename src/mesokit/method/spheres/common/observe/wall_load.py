@@ -10,8 +10,8 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.walls import closed_axes
-from mesokit.method.spheres.common.observe.bed_surface import heights_of, horizontal
 from mesokit.method.spheres.common.observe.protocol import OfSpheres, gravity_axis
+from mesokit.method.spheres.common.observe.shared.bed_surface import heights_of, horizontal
 from mesokit.method.spheres.common.observe.wall_force import exact, surface_names
 from mesokit.seam.engine import Array, RunningSpheres
 from mesokit.seam.estimate import of_mean, of_ratio
