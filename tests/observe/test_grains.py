@@ -278,6 +278,15 @@ def test_plates_give_stress_ratio_and_inertial_number(sign):
     assert np.nanmax(abs(result.fit - result.value)) < 0.05
 
 
+def test_a_bed_that_fills_half_of_its_box_is_as_dense_as_its_lattice():
+    observable = ShearRheology(margin=2.0)
+    case = hard([observable], number=100, size=(10, 20), packing_fraction=None, walls=[Plates("y")])
+    rows = np.stack(np.meshgrid(np.arange(10), np.arange(10)), -1).reshape(-1, 2) + 0.5
+    result = after(observable, case, Placed(case, lambda time: rows, np.zeros((2, 2))))
+    assert result["depth of the bed"].measured == pytest.approx(10.0)
+    assert result["packing fraction"].measured == pytest.approx(math.pi / 4, rel=1e-9)
+
+
 @pytest.mark.parametrize("counted", [False, True])
 def test_the_books_of_energy_close(counted):
     observable = EnergyBudget()

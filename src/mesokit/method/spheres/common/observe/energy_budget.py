@@ -33,14 +33,14 @@ class EnergyBudget(OfSpheres):
 @accumulator_of(EnergyBudget)
 class EnergyBudgetAccumulator(Samples):
     """Three energies and three losses in time, nan where they are not counted; `first` is the sum
-    of all at the first sample."""
+    of all at the first sample, `books` that at the last."""
 
-    memory: ClassVar[tuple[str, ...]] = ("series", "samples", "first")
+    memory: ClassVar[tuple[str, ...]] = ("series", "samples", "first", "books")
     width = len(HELD) + 1 + len(LOSSES)
 
     def prepare(self) -> None:
         super().prepare()
-        self.first = math.nan
+        self.first = self.books = math.nan
 
     def observe(self, spheres: RunningSpheres) -> None:
         energies = spheres.energies()
@@ -49,9 +49,9 @@ class EnergyBudgetAccumulator(Samples):
         if counted is not None:
             lost = [counted.get(name, 0.0) for name in LOSSES]
         total = math.fsum(held)
-        books = total if counted is None else math.fsum([total, *counted.values()])
+        self.books = total if counted is None else math.fsum([total, *counted.values()])
         if math.isnan(self.first):
-            self.first = books
+            self.first = self.books
         # what is counted, else what is missing
         gone = self.first - total if counted is None else math.fsum(counted.values())
         self.series.add(spheres.time, [*held, gone, *lost])
@@ -85,11 +85,10 @@ class EnergyBudgetAccumulator(Samples):
             return
         for k, name in enumerate(LOSSES, 4):
             yield Comparison(f"energy lost to {name}", end[k], error[k], unit=UNIT)
-        first = float(rows[0, :4].sum())
-        if first and self.series.stride == 1:
-            books = float(end[:4].sum()) / first
+        if self.first:
             known = math.nan if work else 1.0
-            yield Comparison("energy with losses over that at first", books, 0.0, known, "", work)
+            what = "energy with losses over that at first"
+            yield Comparison(what, self.books / self.first, 0.0, known, "", work)
 
     def work(self) -> str:
         """A note if walls or a bath do work, which no method counts."""

@@ -22,8 +22,9 @@ from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 USUAL_MARGIN = 2.0  # mean diameters
+WIDEST = 0.45  # of the bed: a margin
 DENSE = 0.3  # inertial number up to which flow is dense
-RATE, SHEAR, PRESSURE, FRACTION = range(4)
+RATE, SHEAR, PRESSURE, FRACTION, LOW, HIGH = COLUMNS = range(6)
 LAWS = {2: "da Cruz et al., disks of friction 0.4", 3: "Jop et al., glass beads"}
 
 
@@ -34,7 +35,8 @@ class ShearRheology(OfSpheres):
     Between plates that slide, pressure and shear stress are the forces on both plates over their
     area; in a box with Lees-Edwards shear they are those of motion and of contacts in the whole
     box, at the samples. The pressure is that on planes across the gradient. The shear rate is the
-    slope of a straight line through the velocities, plates' surroundings aside.
+    slope of a straight line through the velocities, plates' surroundings aside. The bed reaches
+    from the lowest to the highest point of its grains.
     """
 
     quantity: Literal["shear-rheology"] = tag("shear-rheology")
@@ -85,8 +87,8 @@ class ShearRheology(OfSpheres):
 
 @accumulator_of(ShearRheology)
 class ShearRheologyAccumulator(BlockAccumulator):
-    """Block averages of shear rate, shear stress, pressure and packing fraction, and of momentum
-    and mass in slices.
+    """Block averages of shear rate, shear stress, pressure, packing fraction and of both ends of
+    the bed, and of momentum and mass in slices.
 
     `before` are time and momentum taken by both plates at the last sample, `grain` the mean
     diameter and the density of grains.
@@ -103,7 +105,7 @@ class ShearRheologyAccumulator(BlockAccumulator):
         self.period = np.where([k in closed for k in range(len(size))], 0.0, size)
         self.plates = None if case.box.sheared else self.surfaces()
         self.edges = np.linspace(0.0, self.depth, observable.bins + 1)
-        self.blocks, self.profile = Blocks((4,)), Blocks((2, observable.bins))
+        self.blocks, self.profile = Blocks((len(COLUMNS),)), Blocks((2, observable.bins))
         self.before, self.grain = np.full(5, np.nan), np.full(2, np.nan)
 
     def surfaces(self) -> tuple[int, int]:
@@ -115,13 +117,13 @@ class ShearRheologyAccumulator(BlockAccumulator):
             first += len(wall.surfaces())
         raise AssertionError  # which `check` has seen
 
-    def bounds(self) -> tuple[float, float]:
-        """Where the layers at both plates end."""
+    def inner(self, low: float, high: float) -> tuple[float, float]:
+        """Where the layers at both plates end, in a bed between two heights."""
         margin = self.observable.margin
         if margin is None:
             margin = 0.0 if self.plates is None else USUAL_MARGIN * float(self.grain[0])
-        margin = min(margin, 0.45 * self.depth)
-        return margin, self.depth - margin
+        margin = min(margin, WIDEST * (high - low))
+        return low + margin, high - margin
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample; on plates of what they have taken since the last."""
@@ -130,16 +132,19 @@ class ShearRheologyAccumulator(BlockAccumulator):
         self.grain = np.array([diameters.mean(), masses.sum() / volumes.sum()])
         if (stress := self.stress(spheres)) is None:
             return
-        low, high = self.bounds()
         places, v = spheres.positions(), spheres.velocities()[:, self.along]
-        height = places[:, self.across]
+        height, ends = places[:, self.across], (0.0, self.depth)
+        if self.plates is not None:  # which may have moved towards each other
+            floor, top = (height - 0.5 * diameters).min(), (height + 0.5 * diameters).max()
+            ends = max(0.0, float(floor)), min(self.depth, float(top))
+        low, high = self.inner(*ends)
         inner = (height >= low) & (height <= high)
         rate = slope(height[inner], v[inner], masses[inner])
         region = np.stack([np.zeros(d), self.case.box.size], axis=1)
         around = with_images(places, 0.5 * diameters, self.period)
         edges = np.array([low, high])
         filled = float(in_slabs(*around, region, self.across, edges)[0])
-        self.blocks.add([rate, *stress, filled / (self.area * (high - low))])
+        self.blocks.add([rate, *stress, filled / (self.area * (high - low)), *ends])
         cell = np.clip(np.searchsorted(self.edges, height, "right") - 1, 0, len(self.edges) - 2)
         count = len(self.edges) - 1
         self.profile.add(
@@ -169,11 +174,12 @@ class ShearRheologyAccumulator(BlockAccumulator):
         velocity = of_ratio(sums[:, 0], sums[:, 1])
         middle, fit = 0.5 * (self.edges[1:] + self.edges[:-1]), None
         if self.blocks.count:
-            low, high = self.bounds()
+            mean = self.blocks.mean()
+            low, high = self.inner(float(mean[LOW]), float(mean[HIGH]))
             known = (middle > low) & (middle < high) & np.isfinite(velocity.value)
             if known.any():
-                mean = float(np.mean(velocity.value[known]))
-                line = mean + self.blocks.mean()[RATE] * (middle - middle[known].mean())
+                start = float(np.mean(velocity.value[known]))
+                line = start + mean[RATE] * (middle - middle[known].mean())
                 fit = np.where(known, line, np.nan)
         axis, letter = AXES[self.across], AXES[self.along]
         return self.report(
@@ -188,10 +194,10 @@ class ShearRheologyAccumulator(BlockAccumulator):
 
     def comparisons(self, found: Estimate) -> Iterator[Comparison]:
         """Shear rate, stress, stress ratio, inertial number and packing fraction."""
-        d, (rate, shear, pressure, fraction) = self.case.box.dimension, found.value
-        unit, one = "m/tau^2" if d == 2 else "m/(a tau^2)", np.eye(4)
+        d, (rate, shear, pressure, fraction, low, high) = self.case.box.dimension, found.value
+        unit, one = "m/tau^2" if d == 2 else "m/(a tau^2)", np.eye(len(COLUMNS))
         sign = math.copysign(1.0, rate)
-        nominal, note = self.nominal()
+        nominal, note = self.nominal(high - low)
         yield Comparison("shear rate", *found.scalar(rate, one[RATE]), nominal, "1/tau", note)
         stress = found.scalar(sign * shear, sign * one[SHEAR])
         yield Comparison("shear stress", *stress, unit=unit)
@@ -216,16 +222,19 @@ class ShearRheologyAccumulator(BlockAccumulator):
         known = float(theory.fraction_of_disks(inertial)) if law and d == 2 else math.nan
         measured = found.scalar(fraction, one[FRACTION])
         yield Comparison("packing fraction", *measured, known, "", law if d == 2 else "")
+        if self.plates is not None:
+            depth = found.scalar(high - low, one[HIGH] - one[LOW])
+            yield Comparison("depth of the bed", *depth, unit="a")
 
-    def nominal(self) -> tuple[float, str]:
-        """The shear rate that is imposed, and what it neglects."""
+    def nominal(self, depth: float) -> tuple[float, str]:
+        """The shear rate that is imposed on a bed so deep, and what it neglects."""
         box = self.case.box
         if self.plates is None:
             return (float(box.shear_rate), "") if box.shear_rate else (math.nan, "")
         for wall in self.case.walls:
             if isinstance(wall, Plates) and AXES.index(wall.axis) == self.across:
                 low, up = ((s.velocity or (0.0,) * 3)[self.along] for s in (wall.lower, wall.upper))
-                rate = (up - low) / self.depth
+                rate = (up - low) / depth
                 return (
                     (rate, "approximate: no slip, and shear even across")
                     if rate
