@@ -152,7 +152,7 @@ class RunOutAccumulator(Samples):
         value, error = each.mean(axis=0), np.full(2, math.nan)
         if len(each) >= FEWEST_BLOCKS:
             error = each.std(axis=0, ddof=1) / math.sqrt(len(each))
-        note = joined(self.spreading(rows), f"approximate: {LAWS[self.grains]}")
+        note = joined(self.spreading(rows), f"approximate: {LAWS[self.grains]}, on a rough floor")
         yield Comparison("aspect ratio of the column", self.start[1] / self.start[0], math.nan)
         yield Comparison(
             "run-out over the first length", value[0] - 1, error[0], self.law(), "", note
