@@ -191,6 +191,7 @@ from mesokit.method.mpcd.thermostat.protocol import Thermostat as Thermostat
 from mesokit.method.mpcd.thermostat.rescale import Rescale as Rescale
 from mesokit.method.spheres.common.kinds import SphereKind as SphereKind
 from mesokit.method.spheres.common.observe.cluster_size import ClusterSize as ClusterSize
+from mesokit.method.spheres.common.observe.energy_budget import EnergyBudget as EnergyBudget
 from mesokit.method.spheres.common.observe.granular_temperature import (
     GranularTemperature as GranularTemperature,
 )
@@ -199,10 +200,18 @@ from mesokit.method.spheres.common.observe.height_profile import HeightProfile a
 from mesokit.method.spheres.common.observe.kind_temperature import (
     KindTemperature as KindTemperature,
 )
+from mesokit.method.spheres.common.observe.outflow import Outflow as Outflow
+from mesokit.method.spheres.common.observe.packing_fraction import (
+    PackingFraction as PackingFraction,
+)
+from mesokit.method.spheres.common.observe.repose_angle import ReposeAngle as ReposeAngle
+from mesokit.method.spheres.common.observe.run_out import RunOut as RunOut
+from mesokit.method.spheres.common.observe.shear_rheology import ShearRheology as ShearRheology
 from mesokit.method.spheres.common.observe.velocity_cumulant import (
     VelocityCumulant as VelocityCumulant,
 )
 from mesokit.method.spheres.common.observe.wall_force import WallForce as WallForce
+from mesokit.method.spheres.common.observe.wall_load import WallLoad as WallLoad
 from mesokit.method.spheres.common.start.from_file import FileStart as FileStart
 from mesokit.method.spheres.common.start.from_file import RunStart as RunStart
 from mesokit.method.spheres.common.start.lattice import LatticeStart as LatticeStart

@@ -109,6 +109,7 @@ BY_NAME = {
 MOST_FILES = 16  # in a folder of machinery; of laws, quantities and pictures there may be more
 LONG = ("theory", "observe", "method/mpcd/observe", "report/flow", "io")
 LONG += ("method/kinetic_monte_carlo/model", "method/kinetic_monte_carlo/observe")
+LONG += ("method/spheres/common/observe",)
 # module: the only places in the package that import it, at most one once a backend exists
 HOMES = {
     "h5py": ("io/",),

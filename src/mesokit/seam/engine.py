@@ -171,6 +171,8 @@ class RunningSpheres(Particles, Protocol):
     `totals` and `moments` are as of a fluid, the latter of all or some. `spins` (n,) in 2D or (n,
     3) in 3D are angular velocities; `energies` has "translation", "rotation" and "potential".
     `wall_impulse` (surfaces, d) is the momentum that each surface has taken since the warm-up.
+    Beyond that, methods of lasting contacts have `stress`, with "kinetic" and "pair" (d, d); those
+    that count losses have `lost`: energy lost since the warm-up to "impact", "friction", "rolling".
     """
 
     def totals(self) -> tuple[int, Array, float]: ...

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, param, tag
 from mesokit.geometry.walls import closed_axes
-from mesokit.loops.neighbours import near_pairs
 from mesokit.method.spheres.common.observe.protocol import OfSpheres
+from mesokit.method.spheres.common.observe.shared.bed_surface import clusters
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
@@ -78,13 +78,4 @@ def cluster_sizes(places: Array, diameters: Array, period: Array, gap: float) ->
     >>> cluster_sizes(rows, np.ones(3), np.array([10.0, 0.0]), 0.2)
     array([2, 1])
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    n = len(places)
-    one, other, distance = near_pairs(places, float(diameters.max()) + gap, period)
-    near = distance < 0.5 * (diameters[one] + diameters[other]) + gap
-    ends = (one[near], other[near])
-    graph = coo_array((np.ones(len(ends[0]), bool), ends), shape=(n, n))
-    _, label = connected_components(graph, directed=False)
-    return np.bincount(label)
+    return np.bincount(clusters(places, diameters, period, gap))

@@ -16,7 +16,7 @@ from mesokit.statistics import TimeSeries
 class OfSpheres(Observable):
     """Something measured of disks and spheres."""
 
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres", "contact-dynamics")
     of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
@@ -38,3 +38,9 @@ def gravity_axis(case: Case, quantity: str) -> int:
     if len(along) != 1 or int(along[0]) not in closed_axes(case):
         raise CaseError(f"{quantity}: expected gravity along one axis, which plates close")
     return int(along[0])
+
+
+def pull_axis(case: Case) -> int | None:
+    """The axis of gravity; None without, or along several axes."""
+    along = np.flatnonzero(case.spheres.gravity)
+    return int(along[0]) if len(along) == 1 else None
