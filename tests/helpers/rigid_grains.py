@@ -28,7 +28,7 @@ def rigid(size, walls=(), given=None, threads=1, seed=1, box=None, contact=None,
     return Simulation(case, threads=threads, **(given or {})).engine
 
 
-def exact(order="coloured", tolerance=1e-13, sweeps=10**6):
+def exact(order="coloured", tolerance=1e-12, sweeps=10_000):
     """A solver that goes on until impulses hardly change."""
     return GaussSeidel(order, sweeps=sweeps, tolerance=tolerance)
 

@@ -39,7 +39,7 @@ def test_each_grain_of_a_column_carries_those_above(order):
     n = 20
     engine = rigid(
         [8, 30], walls=[Plates("y")], given=at_rest([[4.0, 0.5 + i] for i in range(n)]),
-        gravity=[0.0, -G], timestep=0.01, contact={"friction": 0.5}, solver=exact(order, 1e-12),
+        gravity=[0.0, -G], timestep=0.01, contact={"friction": 0.5}, solver=exact(order, sweeps=100_000),
     )  # fmt: skip
     engine.advance(50)
     assert pushes(engine) == pytest.approx(G * (n - 1 - np.arange(n - 1)), rel=1e-6)
@@ -225,7 +225,7 @@ def speed_of_pile(dimension, friction, floor):
     engine = rigid(
         [12.0] * (dimension - 1) + [5.0], walls=[Plates("xyz"[dimension - 1], lower=lower)],
         given=at_rest(places), gravity=[0.0] * (dimension - 1) + [-G], timestep=0.01,
-        contact={"friction": friction}, solver=exact(tolerance=1e-10, sweeps=20_000),
+        contact={"friction": friction}, solver=exact(tolerance=1e-10),
     )  # fmt: skip
     engine.advance(100)
     return float(np.abs(engine.velocities()).max())
