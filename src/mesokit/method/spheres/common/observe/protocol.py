@@ -16,7 +16,7 @@ from mesokit.statistics import TimeSeries
 class OfSpheres(Observable):
     """Something measured of disks and spheres."""
 
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres", "contact-dynamics")
     of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 

@@ -162,7 +162,7 @@ def put(law, step, world, found, f, side):
 
 @scalar
 def put_roll(law, world, found, f, reached, inverse):
-    """Write what friction against rolling needs; inverse: of the radius of the other, 0 of a wall."""
+    """Write what friction against rolling needs; inverse: of the other's radius, 0 of a wall."""
     if law.rolling > 0.0:
         motion, i, j = world.motion, found.pair[f, 0], found.pair[f, 1]
         one, other = 1.0 / reached, inverse

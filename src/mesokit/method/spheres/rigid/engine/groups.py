@@ -88,9 +88,10 @@ class Order(NamedTuple):
     """Contacts in the order of sweeps: colour after colour, or by number.
 
     pair, slot, contact, beside, roll: see `Found`; at (most,): the place here of each that is
-    found; by_number (most,): contacts by their keys; colour (most,); begin (n + 1,): first contact of each
-    number; used (n,): colours of a grain, as bits; colours (MOST_COLOURS + 3,): where each begins,
-    and at the end, how many; shuffled (most,): the order of a sweep; change (most, 4): of impulses.
+    found; by_number (most,): contacts by their keys; colour (most,); begin (n + 1,): first contact
+    of each number; used (n,): colours of a grain, as bits; colours (MOST_COLOURS + 3,): where each
+    begins, and at the end, how many; shuffled (most,): the order of a sweep; change (most, 4): of
+    impulses.
     """
 
     pair: Any
