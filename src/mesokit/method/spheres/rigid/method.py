@@ -6,6 +6,7 @@ from mesokit.method.spheres.common.motion import SphereDisplacement, VelocityMem
 from mesokit.method.spheres.rigid.checks import check_rigid
 from mesokit.method.spheres.rigid.engine.engine import RigidEngine
 from mesokit.method.spheres.rigid.expected import RigidCooling, rigid_equilibrium
+from mesokit.method.spheres.rigid.first_overlaps import with_start
 from mesokit.method.spheres.rigid.scales import timestep_of
 from mesokit.method.spheres.rigid.section import RigidSections
 from mesokit.method.spheres.rigid.summary import rigid_summary
@@ -16,6 +17,7 @@ METHOD = sphere_method(
     RigidEngine,
     rigid_equilibrium,
     (RigidCooling, SphereDisplacement, NeighboursOfSpheres, VelocityMemory),
+    with_start,
     name="contact-dynamics",
     sections=RigidSections,
     observables=(MeanSquareDisplacement,),
