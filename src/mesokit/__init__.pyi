@@ -231,6 +231,12 @@ from mesokit.method.spheres.hard.observe.equation_of_state import (
 )
 from mesokit.method.spheres.hard.observe.free_times import FreeTimes as FreeTimes
 from mesokit.method.spheres.hard.section import HardSpheres as HardSpheres
+from mesokit.method.spheres.rigid.law.cohesion import ContactCohesion as ContactCohesion
+from mesokit.method.spheres.rigid.law.contact import RigidContact as RigidContact
+from mesokit.method.spheres.rigid.section import RigidSpheres as RigidSpheres
+from mesokit.method.spheres.rigid.solver.gauss_seidel import GaussSeidel as GaussSeidel
+from mesokit.method.spheres.rigid.solver.jacobi import Jacobi as Jacobi
+from mesokit.method.spheres.rigid.solver.protocol import ContactSolver as ContactSolver
 from mesokit.method.spheres.soft.observe.contact_stress import ContactStress as ContactStress
 from mesokit.method.spheres.soft.pair.hertz import HertzLaw as HertzLaw
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw as ContactLaw

@@ -23,7 +23,7 @@ class HexaticOrder(Observable):
     """
 
     quantity: Literal["hexatic-order"] = tag("hexatic-order")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres", "contact-dynamics")
     value_label = r"hexatic order $|\psi_6|$"
     units: ClassVar[dict[str, str]] = {"order": ""}
     of_methods_alone: ClassVar[bool] = True

@@ -12,7 +12,7 @@ from mesokit.seam.observable import Observable
 class OfMethod(Observable):
     """An observable of several methods, each of which has a theory of it (`Method.expected`)."""
 
-    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres", "contact-dynamics")
 
     def theory(self, case: Case) -> Any:
         """Theory by the method of a case. Raises CaseError without anything to measure."""

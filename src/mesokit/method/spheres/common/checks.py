@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
+from mesokit.geometry import walls
 from mesokit.geometry.shape_protocol import closed_axes
 
 
@@ -68,3 +69,9 @@ def warnings_of_falls(case: Case, rough: bool) -> Iterator[str]:
             f"spheres.gravity: nothing holds what falls along {axis}: no wall is there, and "
             "plates and spheres are smooth"
         )
+
+
+def rubs(case: Case) -> bool:
+    """Whether a wall has friction of its own."""
+    contacts = [surface.contact for _, surface, _ in walls.surfaces(case)]
+    return any(contact is not None and bool(contact.friction) for contact in contacts)

@@ -1,7 +1,8 @@
-"""Estimated cost of event-driven dynamics and of soft spheres, and the summary that shows it.
+"""Estimated cost of all methods of spheres, and the summary that shows it.
 
-The constants were measured on 2026-11-23 on one core of an AMD EPYC (`examples/which_method.py`);
-estimates are good to a factor of two, ratios of the two methods too.
+The constants were measured on one core of an AMD EPYC: those of event-driven dynamics and of soft
+spheres on 2026-11-23 (`examples/which_method.py`), those of contact dynamics on 2026-11-28.
+Estimates are good to a factor of two, ratios of two methods too.
 """
 
 import math
@@ -24,9 +25,23 @@ LISTED = {2: 10.0, 3: 14.0}  # others on a list of a hard sphere
 STEP, NEIGHBOUR, CONTACT = 25e-9, 5e-9, 20e-9  # seconds, of a soft sphere, for each listed, rubbing
 LIST_REACH = 1.1  # of lists of soft spheres, in diameters
 STEPS = 50  # of soft spheres in a contact
-OVERLAP = 0.01  # in diameters: of soft spheres that are as good as hard
+OVERLAP = 0.01  # in diameters: of soft spheres that are as good as hard, where they collide
+UNDER_WEIGHT = 0.001  # in diameters: and at rest under the weight of all above
 FLIGHTS = 10  # contact times in a free flight, at least, of these
-AT_REST = ("cheaper", "soft spheres", "once grains rest: hard ones collide ever more often")
+SWEPT = {2: 12e-9, 3: 21e-9}  # seconds, of a contact of rigid grains in a sweep
+FOUND = {2: 0.4e-6, 3: 0.5e-6}  # seconds, of a rigid grain in a step, for its contacts and flight
+CONTACTS = {2: 1.8, 3: 2.4}  # of rigid grains in a bed, for each grain, near ones included
+SWEEPS = 500  # most in a step, unless said
+ACCURACY = 1e-4  # of the forces of rigid grains, unless said
+RESTING = "once grains rest"
+NAMES = {
+    "event-driven": "event-driven",
+    "soft-spheres": "soft spheres",
+    "contact-dynamics": "contact dynamics",
+}
+LASTING = 2.0  # sweeps in a step of grains at rest, whose forces last
+SETTLES = 2.2  # times of a fall through the box, after which poured grains are at rest
+STEPS_OF_FALL = 100  # of rigid grains, while one falls by its diameter
 AT_REST_FILLED = {2: 0.8, 3: 0.6}  # of the volume of a bed
 DENSEST = 0.7  # packing fraction up to which rates are estimated
 
@@ -94,6 +109,94 @@ def soft_seconds(number: int, listed: float, rubs: bool) -> float:
     4e-05
     """
     return number * (STEP + listed * (CONTACT if rubs else NEIGHBOUR))
+
+
+def rigid_seconds(number: int, contacts: float, sweeps: float, dimension: int) -> float:
+    """Seconds of a core for a step of rigid grains with so many contacts and sweeps.
+
+    >>> round(rigid_seconds(1000, 1800.0, 100.0, 2), 6)
+    0.00256
+    """
+    return number * FOUND[dimension] + contacts * sweeps * SWEPT[dimension]
+
+
+def sweeps_in_bed(number: int, dimension: int) -> float:
+    """Sweeps in a step of a bed, with the usual keys: those of all forces anew, or the most.
+
+    >>> round(sweeps_in_bed(30, 2)), sweeps_in_bed(3000, 2)
+    (134, 500)
+    """
+    return min(theory.packing_sweeps(number, dimension, ACCURACY, "coloured"), SWEEPS)
+
+
+def settling_time(case: Case) -> float:
+    """Time after which grains that fall through the box are at rest."""
+    gravity, size = case.spheres.gravity, case.box.size
+    strength = math.hypot(*gravity)
+    height = sum(abs(g) * length for g, length in zip(gravity, size, strict=True)) / strength
+    return SETTLES * math.sqrt(2 * height / strength)
+
+
+class Bed(NamedTuple):
+    """Grains that lie on one another: their number, dimension, mean diameter and mass; strength of
+    gravity, and the height of the bed over a diameter."""
+
+    number: int
+    dimension: int
+    diameter: float
+    mass: float
+    gravity: float
+    layers: float
+
+    @property
+    def seconds_of_rigid(self) -> float:
+        """Seconds of a core for a unit of time of contact dynamics, with the usual keys."""
+        d, step = self.dimension, math.sqrt(2 * self.diameter / self.gravity) / STEPS_OF_FALL
+        contacts = CONTACTS[d] * self.number
+        return rigid_seconds(self.number, contacts, sweeps_in_bed(self.number, d), d) / step
+
+    @property
+    def stiffness_as_hard(self) -> float:
+        """Stiffness with which the lowest of soft spheres overlap by `UNDER_WEIGHT`."""
+        return self.mass * self.gravity * max(self.layers, 1.0) / (UNDER_WEIGHT * self.diameter)
+
+    def seconds_of_soft(self, stiffness: float) -> float:
+        """Seconds of a core for a unit of time of soft spheres of a stiffness."""
+        step = math.pi * math.sqrt(0.5 * self.mass / stiffness) / STEPS
+        reach = 2 * LIST_REACH  # of centres, in diameters
+        listed = AT_REST_FILLED[self.dimension] * reach**self.dimension
+        return soft_seconds(self.number, listed, True) / step
+
+    def stiffness_of_equal_cost(self, rigid: float) -> float:
+        """Stiffness from which soft spheres cost more than so many seconds for a unit of time."""
+        return (rigid / self.seconds_of_soft(1.0)) ** 2
+
+
+def bed_of(case: Case) -> Bed:
+    """The bed that the grains of a case with gravity form, at the side to which they fall."""
+    section, box, d = case.spheres, case.box, case.box.dimension
+    number = section.count(box)
+    kinds = list(zip(section.counts(box), section.kinds, strict=True))
+    diameter = sum(n * kind.mean_power(1) for n, kind in kinds) / number * section.scale(box)
+    mass = sum(n * kind.mean_mass(d) for n, kind in kinds) / number
+    g = math.hypot(*section.gravity)
+    pairs = zip(section.gravity, box.size, strict=True)
+    height = sum(abs(a) / g * length for a, length in pairs)
+    layers = height * min(section.fraction(box) / AT_REST_FILLED[d], 1.0) / diameter
+    return Bed(number, d, diameter, mass, g, layers)
+
+
+def at_rest(case: Case, soft: float | None = None) -> tuple[str, Row]:
+    """The cheaper method for grains that come to rest, and its row of `mesokit check`; hard ones
+    collide ever more often. soft: seconds of soft spheres for a unit of time; None if stiff."""
+    bed = bed_of(case)
+    rigid = bed.seconds_of_rigid
+    if soft is None:
+        soft = bed.seconds_of_soft(bed.stiffness_as_hard)
+    name, factor = (
+        ("soft-spheres", rigid / soft) if soft < rigid else ("contact-dynamics", soft / rigid)
+    )
+    return name, ("cheaper", NAMES[name], f"{RESTING}, about {float(f'{factor:.2g}'):g} times")
 
 
 def contact_time_as_hard(flight: Flight) -> float:

@@ -58,10 +58,11 @@ def _beside(
     soft = time / step * cost.soft_seconds(flight.number, flight.listed_by_soft, pair.rough)
     per_flight = 1 / (flight.rate * step)
     rests = cost.comes_to_rest(case, not pair.elastic, section.heating is not None)
+    row = cost.cheaper("event-driven", soft / numbers["seconds"])
     numbers |= {
         "soft_seconds": soft,
         "soft_steps_per_flight": per_flight,
-        "cheaper": "soft-spheres" if rests else "event-driven",
+        "cheaper": "event-driven",
     }
     yield (
         "as soft spheres",
@@ -69,7 +70,9 @@ def _beside(
         f"a contact lasts {contact:.3g} and takes {cost.STEPS} steps, "
         f"a free flight {float(f'{per_flight:.3g}'):g}",
     )
-    yield cost.AT_REST if rests else cost.cheaper("event-driven", soft / numbers["seconds"])
+    if rests:
+        numbers["cheaper"], row = cost.at_rest(case)
+    yield row
 
 
 def _warnings(case: Case, rate: float) -> Iterator[str]:

@@ -1,16 +1,23 @@
 """Combinations of sections that rigid grains refuse."""
 
+import math
+
 from mesokit.case.case import Case
-from mesokit.case.component import show
+from mesokit.case.component import name_of, show
 from mesokit.errors import CaseError
 from mesokit.geometry import walls
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.geometry.solids.solids import Solids
+from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common.checks import (
     check_floor,
     check_plates,
     check_spins,
     periodic_axes,
+    rubs,
 )
+from mesokit.method.spheres.common.walls import other_walls, surface_rows
+from mesokit.method.spheres.rigid import scales
 
 WALLS = walls.Walls(
     moving=True,
@@ -18,6 +25,7 @@ WALLS = walls.Walls(
     opens=True,
     contact=("restitution", "friction", *walls.VIBRATION, *walls.MOTION, *walls.PUSHED),
 )
+FEWEST = 6  # steps in a period of a plate that vibrates
 
 
 def check_rigid(case: Case) -> None:
@@ -26,8 +34,87 @@ def check_rigid(case: Case) -> None:
     for problem in WALLS.problems(case):
         raise CaseError(problem)
     section.check(box)
+    section.require_room(box)
     section.start.check(case)
+    _check_walls(case)
     check_plates(case)
+    _check_contact(case)
+    _check_shear(case)
+    _check_box(case)
+    check_floor(case)
+    check_spins(case, section.turns or rubs(case), "spheres.contact.friction above 0")
+    _check_range(case)
+    _check_step(case)
+
+
+def _check_walls(case: Case) -> None:
+    others = other_walls(case)
+    surface_rows(case, others)
+    if others:
+        Solids(case.walls, case.box, only=others)
+    keys = {f"wall[#{i + 1}]" for i in others}
+    for key, surface, _ in walls.surfaces(case):
+        _check_surface(key, surface, key.partition(".")[0] in keys)
+
+
+def _check_surface(key: str, surface: Surface, other: bool) -> None:
+    contact = surface.contact
+    if contact is None:
+        return
+    if other and contact.amplitude > 0:
+        raise CaseError(f"{key}.contact.amplitude = {show(contact.amplitude)}: only plates vibrate")
+    if contact.friction and surface.rule == "slip":
+        raise CaseError(
+            f"{key}.contact.friction = {show(contact.friction)}: no effect with {key}.rule = "
+            "'slip'; leave one out"
+        )
+
+
+def _check_contact(case: Case) -> None:
+    """Rolling needs friction, and a solver that has it."""
+    law, solver = case.spheres.contact, case.spheres.solver
+    if law.rolling == 0:
+        return
+    given = f"spheres.contact.rolling = {show(law.rolling)}"
+    if law.friction == 0 and not rubs(case):
+        raise CaseError(
+            f"{given}: no effect on smooth grains, which nothing turns; leave it out, or expected "
+            "spheres.contact.friction above 0"
+        )
+    if not solver.rolls:
+        raise CaseError(
+            f"{given}: not with spheres.solver.rule = {show(name_of(solver))}; expected rule "
+            "'gauss-seidel'"
+        )
+
+
+def _check_shear(case: Case) -> None:
+    """Images that slide along x need a box that repeats along x and y, without solids."""
+    box, given = case.box, case.box.shear_key
+    if not box.sheared:
+        return
+    for i, wall in enumerate(case.walls):
+        if not wall.closed_axes:
+            raise CaseError(
+                f"{given}: not with wall[#{i + 1}].shape = {show(name_of(wall))}, which has no "
+                "place in images that slide; expected plates across z, or none"
+            )
+        for axis in sorted({"x", "y"} & set(wall.closed_axes)):
+            raise CaseError(
+                f"{given}: not with wall[#{i + 1}].axis = {show(axis)}: the box repeats along x "
+                "and y; expected plates that move along themselves, and no shear of the box"
+            )
+    for axis, g in zip(box.axes, case.spheres.gravity, strict=False):
+        if g and axis != "z":
+            raise CaseError(
+                f"{given}: not with spheres.gravity = {show(list(case.spheres.gravity))}: the box "
+                f"repeats along {axis}; leave one out"
+            )
+
+
+def _check_box(case: Case) -> None:
+    """The box is so wide that no pair is twice on a list."""
+    section, box = case.spheres, case.box
     reach, shut = section.reach(box), closed_axes(case.walls)
     for axis, length in periodic_axes(case):
         if length < 2 * reach:
@@ -40,5 +127,34 @@ def check_rigid(case: Case) -> None:
                 f"spheres.skin = {show(section.skin)}: expected less than "
                 f"{0.5 * length - reach:.3g}, half of the box along {axis} less the reach"
             )
-    check_floor(case)
-    check_spins(case, section.turns, "spheres.contact.friction above 0")
+
+
+def _check_range(case: Case) -> None:
+    """Cohesion acts between neighbours on a list, so that it is shorter than the skin."""
+    cohesion, skin = case.spheres.contact.cohesion, scales.skin_of(case)
+    if cohesion is not None and cohesion.range >= skin:
+        raise CaseError(
+            f"spheres.contact.cohesion.range = {show(cohesion.range)}: expected less than the skin "
+            f"of neighbour lists, {skin:.3g} (spheres.skin)"
+        )
+
+
+def _check_step(case: Case) -> None:
+    """Steps are short against the passage of two grains, and against vibrations."""
+    section, step = case.spheres, scales.timestep_of(case)
+    longest = scales.longest_step(case, scales.usual_speed(case))
+    if step >= longest:
+        raise CaseError(
+            f"spheres.timestep = {show(section.timestep)}: grains pass the skin of neighbour lists "
+            f"({scales.skin_of(case):.3g}) in a step; expected less than {longest:.3g}"
+        )
+    for key, surface, _ in walls.surfaces(case):
+        contact = surface.contact
+        shaken = 0.0 if contact is None else contact.amplitude * contact.frequency
+        if contact is not None and shaken > 0 and step * contact.frequency > 2 * math.pi / FEWEST:
+            period = 2 * math.pi / contact.frequency
+            raise CaseError(
+                f"{key}.contact.frequency = {show(contact.frequency)}: a period has "
+                f"{period / step:.3g} steps; expected at least {FEWEST}, spheres.timestep of at "
+                f"most {period / FEWEST:.3g}"
+            )

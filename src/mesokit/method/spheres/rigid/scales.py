@@ -3,10 +3,13 @@
 import math
 
 from mesokit.case.case import Case
+from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.walls import surfaces
 
 OF_FALL = 0.01  # of the time in which a grain falls by its diameter
 OF_FLIGHT = 0.02  # diameters that a grain moves in a step
+OF_SKIN = 0.8  # of the step in which the fastest grain passes the skin
+OF_PERIOD = 0.02  # of the period of a vibration
 FASTEST = 3.0  # thermal velocities, hardly more
 
 
@@ -56,12 +59,66 @@ def largest_speed(case: Case) -> float:
     return max(fall, usual_speed(case))
 
 
+def restitutions(case: Case) -> list[float]:
+    """Restitution of grains, and of the surfaces of walls that have one of their own."""
+    contacts = [surface.contact for _, surface, _ in surfaces(case)]
+    own = [c.restitution for c in contacts if c is not None and c.restitution is not None]
+    return [case.spheres.contact.restitution, *own]
+
+
+def skin_of(case: Case) -> float:
+    """Length of neighbour lists beyond contact."""
+    return float(case.spheres.skin_of(case.box, closed_axes(case.walls)))
+
+
+def longest_step(case: Case, speed: float) -> float:
+    """The time of a step in which two grains of a speed come as near as the skin is long.
+
+    The engine takes twice the speed at the end of a step, more if they bounce, and the range of
+    cohesion off (`reach_of_step`).
+    """
+    cohesion, g = case.spheres.contact.cohesion, strength_of_gravity(case)
+    within = 0.0 if cohesion is None else cohesion.range
+    free = max(skin_of(case) - within, 0.0) / (2 * (1 + max(restitutions(case))))
+    speed += speed_of_walls(case)
+    # speed * step + g * step^2 = free, without a difference of large numbers
+    sum_of = speed + math.sqrt(speed * speed + 4 * g * free)
+    return 2 * free / sum_of if sum_of > 0 else math.inf
+
+
+def shortest_period(case: Case) -> float:
+    """The shortest period of a plate that vibrates; infinite without one."""
+    contacts = [surface.contact for _, surface, _ in surfaces(case)]
+    rates = [c.frequency for c in contacts if c is not None and c.amplitude * c.frequency > 0]
+    return 2 * math.pi / max(rates) if rates else math.inf
+
+
+def steps_by_cause(case: Case) -> dict[str, float]:
+    """Largest times of a step, unless `timestep` is given, by what they follow from."""
+    diameter, g, speed = mean_diameter(case), strength_of_gravity(case), usual_speed(case)
+    fall = OF_FALL * math.sqrt(2 * diameter / g) if g > 0 else math.inf
+    flight = OF_FLIGHT * diameter / speed if speed > 0 else math.inf
+    return {
+        "a hundredth of the fall by a diameter": fall,
+        "a fiftieth of the flight of a diameter": flight,
+        "no grain that falls through the box passes another": OF_SKIN
+        * longest_step(case, largest_speed(case)),
+        "a fiftieth of the shortest vibration": OF_PERIOD * shortest_period(case),
+    }
+
+
 def timestep_of(case: Case) -> float:
     """Time of a step."""
     if case.spheres.timestep is not None:
         return float(case.spheres.timestep)
-    diameter, g, speed = mean_diameter(case), strength_of_gravity(case), usual_speed(case)
-    fall = OF_FALL * math.sqrt(2 * diameter / g) if g > 0 else math.inf
-    flight = OF_FLIGHT * diameter / speed if speed > 0 else math.inf
-    step = min(fall, flight)
+    step = min(steps_by_cause(case).values())
     return step if math.isfinite(step) else OF_FLIGHT
+
+
+def cause_of_step(case: Case) -> str:
+    """What the time of a step follows from; nothing where it is given."""
+    if case.spheres.timestep is not None:
+        return ""
+    causes = steps_by_cause(case)
+    cause = min(causes, key=lambda name: causes[name])
+    return cause if math.isfinite(causes[cause]) else "nothing moves"

@@ -12,6 +12,7 @@ from mesokit.method.spheres.common.checks import (
     check_plates,
     check_spins,
     periodic_axes,
+    rubs,
 )
 from mesokit.method.spheres.common.walls import other_walls, surface_rows
 from mesokit.method.spheres.soft import scales
@@ -110,9 +111,3 @@ def _check_potential(case: Case) -> None:
             f"spheres.kinds: diameter {given:.9g}; expected that of the potential, {own:.9g}: "
             "leave it out, and give number or density but no packing fraction"
         )
-
-
-def rubs(case: Case) -> bool:
-    """Whether a wall has friction of its own."""
-    contacts = [surface.contact for _, surface, _ in walls.surfaces(case)]
-    return any(contact is not None and bool(contact.friction) for contact in contacts)

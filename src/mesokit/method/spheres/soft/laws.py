@@ -9,10 +9,10 @@ from mesokit.case.case import Case
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
+from mesokit.method.spheres.common.checks import rubs
 from mesokit.method.spheres.common.contacts.listed import Others
 from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.walls import opening, other_walls, room_of, surface_rows
-from mesokit.method.spheres.soft.checks import rubs
 from mesokit.method.spheres.soft.engine.central import Central
 from mesokit.method.spheres.soft.engine.contact.force import OWN, Contact
 from mesokit.method.spheres.soft.engine.groups import Motion

@@ -7,10 +7,9 @@ from typing import Any
 from mesokit.case.amounts import duration_text, number
 from mesokit.case.case import Case
 from mesokit.method.spheres.common import cost
-from mesokit.method.spheres.common.checks import warnings_of_falls
+from mesokit.method.spheres.common.checks import rubs, warnings_of_falls
 from mesokit.method.spheres.common.kinds import ball_volume
 from mesokit.method.spheres.soft import scales
-from mesokit.method.spheres.soft.checks import rubs
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 from mesokit.processes.cores import usable_cores
 from mesokit.seam.method import Row, Summary
@@ -70,29 +69,27 @@ def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
 
 def _beside(case: Case, steps: int, core_seconds: float, numbers: dict[str, Any]) -> Iterator[Row]:
     """Rows on the cost of the same spheres as hard ones, and on the cheaper method."""
-    section, step = case.spheres, numbers["timestep"]
-    flight = cost.flight_of(section, case.box)
-    if flight is None or not isinstance(section.pair, ContactLaw):
+    section, time = case.spheres, steps * numbers["timestep"]
+    if not isinstance(section.pair, ContactLaw):
         return
-    hard = steps * step * cost.hard_seconds(flight)
-    rests = cost.comes_to_rest(case, _loses(case), section.thermostat is not None)
-    numbers |= {
-        "hard_seconds": hard,
-        "steps_per_flight": 1 / (flight.rate * step),
-        "cheaper": "soft-spheres" if rests or core_seconds < hard else "event-driven",
-    }
-    yield "steps per flight", number(numbers["steps_per_flight"]), "from a collision to the next"
-    yield (
-        "as hard spheres",
-        duration_text(max(hard, 0.1)),
-        "estimate: event-driven, while they fly as at first",
-    )
-    if rests:
-        yield cost.AT_REST
-    elif core_seconds < hard:
-        yield cost.cheaper("soft spheres", hard / core_seconds)
-    else:
-        yield cost.cheaper("event-driven", core_seconds / hard)
+    flight = cost.flight_of(section, case.box)
+    if flight is not None:
+        per_flight, hard = 1 / (flight.rate * numbers["timestep"]), time * cost.hard_seconds(flight)
+        numbers |= {"hard_seconds": hard, "steps_per_flight": per_flight}
+        yield "steps per flight", number(per_flight), "from a collision to the next"
+        yield (
+            "as hard spheres",
+            duration_text(max(hard, 0.1)),
+            "estimate: event-driven, while they fly as at first",
+        )
+    if cost.comes_to_rest(case, _loses(case), section.thermostat is not None):
+        numbers["cheaper"], row = cost.at_rest(case, core_seconds / time if time else None)
+        yield row
+    elif flight is not None:
+        name = "soft-spheres" if core_seconds < hard else "event-driven"
+        numbers["cheaper"] = name
+        more, less = max(hard, core_seconds), min(hard, core_seconds)
+        yield cost.cheaper(cost.NAMES[name], more / less if less else 1.0)
 
 
 def _loses(case: Case) -> bool:

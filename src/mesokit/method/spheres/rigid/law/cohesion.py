@@ -10,10 +10,10 @@ from mesokit.scalar.jit import scalar
 
 
 @component
-class Cohesion:
+class ContactCohesion:
     """A constant force between grains, within a range of their surfaces.
 
-    >>> Cohesion(force=2.0, range=0.01).energy
+    >>> ContactCohesion(force=2.0, range=0.01).energy
     0.02
     """
 

@@ -1,7 +1,7 @@
 """What two rigid grains do to one another: the coefficients of all laws of a contact."""
 
 from mesokit.case.component import component, param
-from mesokit.method.spheres.rigid.law.cohesion import Cohesion
+from mesokit.method.spheres.rigid.law.cohesion import ContactCohesion
 
 
 @component
@@ -33,7 +33,7 @@ class RigidContact:
         ge=0,
         le=1e6,
     )
-    cohesion: Cohesion | None = param(None, doc="pull at short range (none unless said)")
+    cohesion: ContactCohesion | None = param(None, doc="pull at short range (none unless said)")
 
     @property
     def turns(self) -> bool:

@@ -10,6 +10,7 @@ from mesokit.method.spheres.rigid.solver.protocol import (
     ContactSolver,
     Sweeping,
 )
+from mesokit.theory.sweeps import Order
 
 ORDERS = {"coloured": COLOURED, "ordered": ORDERED, "random": RANDOM}
 
@@ -31,6 +32,14 @@ class GaussSeidel(ContactSolver):
         doc="'coloured': colour after colour; 'ordered': by the numbers of the grains; 'random': "
         "drawn anew for every sweep",
     )
+
+    @property
+    def shared(self) -> bool:
+        return self.order == "coloured"
+
+    @property
+    def spreads(self) -> Order:
+        return self.order
 
     def kernel(self) -> Sweeping:
         return Sweeping(ORDERS[self.order], self.sweeps, self.tolerance, 1.0)

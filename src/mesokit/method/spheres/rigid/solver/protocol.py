@@ -1,10 +1,11 @@
 """Base of the solvers of contact forces, and what the loops know of them."""
 
 from abc import ABC, abstractmethod
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from mesokit.case.component import component, param
 from mesokit.case.registry import family
+from mesokit.theory.sweeps import Order
 
 COLOURED, ORDERED, RANDOM, TOGETHER = range(4)  # orders of contacts within a sweep
 
@@ -28,6 +29,8 @@ class ContactSolver(ABC):
     impulse is below `tolerance` times the mean impulse, or after `sweeps`.
     """
 
+    rolls: ClassVar[bool] = True  # whether it has friction against rolling
+
     sweeps: int = param(500, doc="most sweeps in a step", ge=1, le=10**7, kw_only=True)
     tolerance: float = param(
         1e-4,
@@ -36,6 +39,21 @@ class ContactSolver(ABC):
         le=1,
         kw_only=True,
     )
+
+    @property
+    def shared(self) -> bool:
+        """Whether threads share the contacts."""
+        return True
+
+    @property
+    def settles(self) -> bool:
+        """Whether errors decay in dense packings."""
+        return True
+
+    @property
+    @abstractmethod
+    def spreads(self) -> Order:
+        """The order of updates by which forces spread (`theory.sweep_spread`)."""
 
     @abstractmethod
     def kernel(self) -> Sweeping:
