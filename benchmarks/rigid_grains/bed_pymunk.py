@@ -2,13 +2,16 @@
 
 Python of an environment with pymunk runs it:
 
-    PYTHON bed_pymunk.py BED WIDTH SWEEPS [--settle STEPS] [--write FILE] [--cold]
+    PYTHON bed_pymunk.py BED WIDTH SWEEPS [--settle STEPS] [--write FILE]
+    PYTHON bed_pymunk.py BED WIDTH SWEEPS,SWEEPS,.. --cold
 
 BED is an array file (.npy) with a row for each disk: x, y, radius. The bin is WIDTH wide, with a
 floor at 0, gravity 1 and friction 0.5. At each line that it reads it prints nanoseconds of CPU
-time for a contact and sweep, the contacts, and the part of weights that is not balanced. With
-`--cold` a line is one step of a new space, without impulses from an earlier step: it prints
-seconds of CPU time in place of nanoseconds.
+time for a contact and sweep, the contacts, and the part of weights that is not balanced.
+
+With `--cold` it prints a line for each number of sweeps: their number, seconds of CPU time for one
+step of a new space, which has no impulses of an earlier step, and how far velocities then are from
+those after the largest number of sweeps: root mean square over that of a free fall.
 
 Contacts are those that Chipmunk's solver has in the step: its arbiters, each once, of two bodies
 or of one with a wall. Two circles have one contact point, as a circle and a segment have.
@@ -70,34 +73,47 @@ def places(space: pymunk.Space) -> np.ndarray:
     return np.array([(*b.position, next(iter(b.shapes)).radius) for b in space.bodies])
 
 
-def unbalanced(space: pymunk.Space) -> float:
-    """Root mean square of what is left of the weight of disks after a step from rest."""
-    speeds = np.array([tuple(body.velocity) for body in space.bodies])
-    return float(np.sqrt((speeds**2).sum(axis=1).mean()) / TIMESTEP)
+def velocities(space: pymunk.Space) -> np.ndarray:
+    """Of all disks, in units of a step of free fall."""
+    return np.array([tuple(body.velocity) for body in space.bodies]) / TIMESTEP
+
+
+def size(speeds: np.ndarray) -> float:
+    """Root mean square."""
+    return float(np.sqrt((speeds**2).sum(axis=1).mean()))
+
+
+def cold(disks: np.ndarray, width: float, sweeps: list[int]) -> None:
+    """Print how a first step comes nearer to its end with more sweeps."""
+    found = []
+    for most in sweeps:
+        space = bed(disks, width, most)
+        began = time.process_time()
+        space.step(TIMESTEP)
+        found.append((most, time.process_time() - began, velocities(space)))
+    for most, took, speeds in found:
+        print(most, took, size(speeds - found[-1][2]), flush=True)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("bed")
     parser.add_argument("width", type=float)
-    parser.add_argument("sweeps", type=int)
+    parser.add_argument("sweeps", type=lambda text: [int(each) for each in text.split(",")])
     parser.add_argument("--settle", type=int, default=0)
     parser.add_argument("--write")
     parser.add_argument("--cold", action="store_true")
     given = parser.parse_args()
-    space = bed(np.load(given.bed), given.width, given.sweeps)
+    disks, sweeps = np.load(given.bed), given.sweeps[-1]
+    if given.cold:
+        cold(disks, given.width, given.sweeps)
+        return
+    space = bed(disks, given.width, sweeps)
     for _ in range(given.settle):
         space.step(TIMESTEP)
     if given.write:
         np.save(given.write, places(space))
     print("ready", flush=True)
-    if given.cold:
-        for _ in sys.stdin:
-            space = bed(places(space), given.width, given.sweeps)
-            began = time.process_time()
-            space.step(TIMESTEP)
-            took = time.process_time() - began
-            print(took, contacts(space), unbalanced(space), flush=True)
     for _ in sys.stdin:
         took, counts = 0.0, []
         for _ in range(STEPS // COUNTED):
@@ -110,7 +126,7 @@ def main() -> None:
         took /= len(counts) * COUNTED
         counts.append(contacts(space))
         mean = float(np.mean(counts))
-        print(1e9 * took / (mean * given.sweeps), mean, unbalanced(space), flush=True)
+        print(1e9 * took / (mean * sweeps), mean, size(velocities(space)), flush=True)
 
 
 if __name__ == "__main__":
