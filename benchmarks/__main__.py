@@ -2,8 +2,8 @@
 
 python -m benchmarks [--rounds 5] [--seconds 3] [--only PART,PART]
 
-Parts: peers, ranks, cost, solids, bonded, solutes, event-driven, soft, flocks,
-kinetic-monte-carlo, observe, memory, startup.
+Parts: peers, ranks, cost, solids, bonded, solutes, event-driven, soft,
+contact-dynamics, flocks, kinetic-monte-carlo, observe, memory, startup.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pathlib import Path
 
 from benchmarks import (
     bonded,
+    contact_dynamics,
     costs,
     event_driven,
     flocks,
@@ -35,6 +36,7 @@ PARTS = {
     "solutes": solutes.table,
     "event-driven": event_driven.table,
     "soft": soft_spheres.table,
+    "contact-dynamics": contact_dynamics.table,
     "flocks": flocks.table,
     "kinetic-monte-carlo": kinetic_monte_carlo.table,
     "observe": costs.observables,

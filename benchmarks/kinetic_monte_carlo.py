@@ -22,16 +22,16 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from statistics import median
 from typing import Any
 
+from benchmarks import worker
+from benchmarks.worker import ROOT, Worker
 from mesokit import Box, Run, Simulation
 from mesokit.method.kinetic_monte_carlo.model.ising import Ising
 from mesokit.method.kinetic_monte_carlo.model.lattice_gas import GasProcess, LatticeGas
 from mesokit.method.kinetic_monte_carlo.section import Lattice, Sublattices
 
-ROOT = Path(__file__).resolve().parent.parent
 PEER = ROOT / "build" / "kmcos"  # the compiled model
 GAS = LatticeGas(
     process=(
@@ -70,35 +70,6 @@ def work(model: str, side: int, select: Any, sublattices: bool, threads: int, wa
         print(1e9 * took / (int(engine.happened().sum()) - before), flush=True)
 
 
-class Worker:
-    """A process that times events on demand."""
-
-    def __init__(self, command: Sequence[str]) -> None:
-        pipe = subprocess.PIPE
-        self.process = subprocess.Popen(
-            command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, text=True, cwd=ROOT
-        )
-        while self._line() != "ready":
-            pass
-
-    def _line(self) -> str:
-        line = self.process.stdout.readline()
-        if not line:
-            raise RuntimeError(f"{' '.join(map(str, self.process.args))}: it ended")
-        return line.strip()
-
-    def time(self) -> float:
-        """Nanoseconds of an event."""
-        self.process.stdin.write("\n")
-        self.process.stdin.flush()
-        return float(self._line())
-
-    def end(self) -> None:
-        """End the process."""
-        self.process.stdin.close()
-        self.process.wait()
-
-
 def ours(model: str, side: int, *more: str) -> Worker:
     """mesokit."""
     module = "benchmarks.kinetic_monte_carlo"
@@ -117,11 +88,8 @@ def peer(side: int) -> Worker | None:
 
 
 def in_turn(workers: Sequence[Worker | None], rounds: int) -> list[list[float]]:
-    """Times of each, a list for a round; nan of one that is not there."""
-    found = [[one.time() if one else float("nan") for one in workers] for _ in range(rounds)]
-    for one in filter(None, workers):
-        one.end()
-    return found
+    """Nanoseconds of an event of each, a list for a round; nan of one that is not there."""
+    return [[one[0] for one in each] for each in worker.in_turn(workers, rounds)]
 
 
 def table(rounds: int, seconds: float) -> Iterator[str]:
