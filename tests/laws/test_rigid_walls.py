@@ -191,7 +191,9 @@ def test_a_disk_rolls_in_a_pipe_by_its_fall():
         engine.advance(round(2.0 / timestep))
         fallen = place[1] - engine.positions()[0, 1]
         off.append((engine.velocities()[0] ** 2).sum() / (4 / 3 * G * fallen) - 1)
-        assert engine.spins()[0] ** 2 == pytest.approx((engine.velocities()[0] ** 2).sum() / 0.25, rel=0.01)
+        assert engine.spins()[0] ** 2 == pytest.approx(
+            (engine.velocities()[0] ** 2).sum() / 0.25, rel=0.01
+        )
     assert abs(off[0]) < 0.01
     assert abs(off[1]) < 0.4 * abs(off[0])
 

@@ -32,6 +32,15 @@ def strength_of_gravity(case: Case) -> float:
     return math.hypot(*case.spheres.gravity)
 
 
+def closing_speed(case: Case) -> float:
+    """The largest speed of a wall along its normal, of those that are not pushed."""
+    found = [0.0]
+    for _, surface, _ in surfaces(case):
+        if (contact := surface.contact) is not None:
+            found.append(contact.amplitude * contact.frequency + abs(contact.speed))
+    return max(found)
+
+
 def speed_of_walls(case: Case) -> float:
     """The largest speed of a wall."""
     farthest, speeds = 0.5 * math.hypot(*case.box.size), [0.0]  # from the axis of a wall that turns

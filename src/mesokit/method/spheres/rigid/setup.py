@@ -66,7 +66,7 @@ def setup_of(case: Case, made: Made) -> RigidSetup:
         Motion(
             scales.timestep_of(case),
             tuple(map(float, section.gravity or (0.0,) * box.dimension)),
-            scales.speed_of_walls(case),
+            scales.closing_speed(case),
             0.0,
         ),
         shear,

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.case.case import Case
 from mesokit.case.component import component, tag
 from mesokit.method.spheres.common.observe.bearing import GroupAccumulator, OfContacts
 from mesokit.seam.engine import TouchingSpheres
@@ -142,16 +141,16 @@ class ContactNetworkAccumulator(GroupAccumulator):
             turn = self._gradient(vectors[:, 0], first) / (apart or 1.0)
             known = mean.scalar(angle, np.degrees(turn), over=(apart, slope))
             note = "" if np.isfinite(known[0]) else "none: the fabric is isotropic within its error"
-            yield Comparison("direction of most contacts, from x", *known, unit="degrees", note=note)
+            yield Comparison(
+                "direction of most contacts, from x", *known, unit="degrees", note=note
+            )
             return
         for axis, part in zip("xyz", first, strict=True):
             yield Comparison(f"direction of most contacts along {axis}", abs(part), np.nan)
 
     def _gradient(self, one: Array, other: Array) -> Array:
         """Derivatives of one F other by the entries of the symmetric tensor F."""
-        parts = [
-            one[a] * other[b] + (one[b] * other[a] if a != b else 0.0) for a, b in self.pairs
-        ]
+        parts = [one[a] * other[b] + (one[b] * other[a] if a != b else 0.0) for a, b in self.pairs]
         return np.array(parts)
 
 

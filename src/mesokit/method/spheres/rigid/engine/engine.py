@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import RunError
+from mesokit.method.spheres.common.contacts.now import Contacts, in_order
 from mesokit.method.spheres.common.engine import SphereEngine
 from mesokit.method.spheres.common.walls import surfaces_of
 from mesokit.method.spheres.rigid.engine.groups import SPIN
@@ -78,6 +79,31 @@ class RigidEngine(SphereEngine):
 
     def potential_energy(self) -> float:
         return 0.0
+
+    def contacts(self) -> Contacts:
+        """All contacts that had a force in the last step, with places and normals of now."""
+        pairs, values = self.system.contacts(self.time)
+        walls = pairs[:, 1] < 0
+        pairs[walls, 1] = -1 - self.surfaces[1][-1 - pairs[walls, 1]]
+        return in_order(pairs, values, self.dimension, lambda places: self.system.inside(places)[0])
+
+    def coordination(self) -> NDArray[np.int64]:
+        """Number of spheres and walls with a force on each grain, (n,)."""
+        pairs = self.contacts().pairs
+        return np.bincount(pairs[pairs >= 0], minlength=self.n)
+
+    @property
+    def stress(self) -> dict[str, Array]:
+        """Minus the momentum flux, (d, d): "kinetic" and "pair", sums over m v v and r F over the
+        volume of the box."""
+        volume, v, found = float(np.prod(self.box)), self.velocities(), self.contacts()
+        pairs = ~found.at_walls
+        radii = 0.5 * self.diameters()[found.pairs[pairs]].sum(axis=1)
+        branch = found.normals[pairs] * (radii + found.gaps[pairs])[:, None]
+        return {
+            "kinetic": -(self.made.masses[:, None] * v).T @ v / volume,
+            "pair": -branch.T @ found.forces[pairs] / volume,
+        }
 
     @property
     def wall_impulse(self) -> Array:

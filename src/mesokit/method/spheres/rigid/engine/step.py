@@ -62,7 +62,7 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
     mine, most = noted[worker.thread], len(found.slot) // worker.threads
     lost = taken[worker.thread]
     mine[WHY] = GOES_ON
-    done, afresh, total = 0, True, 0
+    done, afresh, total = 0, True, np.int64(0)
     while done < steps:
         # All of a step as the comment of each stage says. Barriers are where a thread reads what
         # another has written. All threads see the same numbers, so they end together.
@@ -109,7 +109,7 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
         if worker.thread == 0:
             push_plates(motion, world)
         barrier(worker)
-        total = 0
+        total = np.int64(0)
         for t in range(worker.threads):
             total += np.int64(noted[t, COUNT])
         # 5. Impulses for the velocities at t + dt, from those of the last step.

@@ -1,6 +1,6 @@
 """Sweeps over all contacts: the impulse of each becomes what its law asks for."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -48,7 +48,7 @@ class Seen(NamedTuple):
     contacts with one, and the largest."""
 
     change: float
-    sum: int
+    sum: Any
     touching: int
     top: float
 
@@ -316,7 +316,7 @@ def solve(worker, law, solver, counter, world, order, total, noted):
     the last one over the mean impulse, the mean, and the number of contacts with an impulse."""
     mine = noted[worker.thread]
     begin_sweeps(worker, law, solver, world, order, total)
-    done, ratio, mean, touching, scale = 0, 0.0, 0.0, 0, 0.0
+    done, ratio, mean, touching, scale = 0, 0.0, 0.0, np.int64(0), 0.0
     # Sums of impulses are whole parts of the largest one of the sweep before, so that they have no
     # order. All threads see the same numbers, and end together.
     while done < solver.sweeps and total > 0:
@@ -331,6 +331,7 @@ def solve(worker, law, solver, counter, world, order, total, noted):
             touching += np.int64(noted[t, TOUCHING])
         barrier(worker)
         done += 1
+        # relative to the mean impulse
         mean = parts / (scale * touching) if scale > 0.0 and touching > 0 else 0.0
         ratio = change / mean if mean > 0.0 else (np.inf if change > 0.0 else 0.0)
         known, scale = scale > 0.0 or top == 0.0, (FINE / top if top > 0.0 else 0.0)

@@ -11,8 +11,10 @@ from mesokit.kernels.packing import Packing
 from mesokit.loops.layout import zeros
 from mesokit.method.spheres.common.contacts.groups import REACH, SlidBox
 from mesokit.method.spheres.common.contacts.listed import ListedSpheres
+from mesokit.method.spheres.common.contacts.now import COLUMNS
 from mesokit.method.spheres.common.contacts.remembered import pairs_of, remember
 from mesokit.method.spheres.common.contacts.taken import WIDTH, all_taken, in_numbers
+from mesokit.method.spheres.rigid.engine.collect import Rows, collect
 from mesokit.method.spheres.rigid.engine.groups import (
     CONTACT,
     DONE,
@@ -90,14 +92,16 @@ class RigidSystem(ListedSpheres):
     def _order(self) -> Order:
         most, d, n = self.most * self.worker.size, self.dimension, self.n
         rolls = most if self.given.law.rolling > 0 else 0
-        places = (np.zeros(most, np.int64) for _ in range(3))
+        at, by_number, colour = (np.zeros(most, np.int64) for _ in range(3))
         return Order(
             np.zeros((most, 2), np.int32),
             np.zeros(most, np.int64),
             zeros((most, CONTACT[d])),
             np.zeros((most, 2)),
             zeros((rolls, ROLL)),
-            *places,
+            at,
+            by_number,
+            colour,
             np.zeros(n + 1, np.int64),
             np.zeros(n, np.int64),
             np.zeros(MOST_COLOURS + 2, np.int64),
@@ -118,12 +122,15 @@ class RigidSystem(ListedSpheres):
         self.found, self.order_of = self._found(), self._order()
 
     def box_of_lists(self) -> Any:
-        """The box as it is when lists are made."""
+        return self.box_at(self.made_at)
+
+    def box_at(self, time: float) -> Any:
+        """The box as it is at a time."""
         shear = self.given.shear
         if isinstance(shear, AtRest):
             return self.box
         size, inverse = self.box
-        return SlidBox(size, inverse, float(slid(shear.history, self.made_at)) % size[0], 0.0)
+        return SlidBox(size, inverse, float(slid(shear.history, time)) % size[0], 0.0)
 
     # --- start and steps --------------------------------------------------------------------------
 
@@ -211,6 +218,21 @@ class RigidSystem(ListedSpheres):
         return int(self.noted[0, SWEEPS]), float(self.noted[0, RATIO]), float(self.noted[0, MEAN])
 
     # --- reading ----------------------------------------------------------------------------------
+
+    def contacts(self, time: float) -> tuple[NDArray[np.int64], Array]:
+        """Pairs (m, 2) and values (m, 10) of all contacts with a force; see `collect.Rows`."""
+        solid = self.walls.solid
+        beside = () if self.listed.others is None else (solid.springs,)
+        m = sum(int(a.any(axis=1).sum()) for a in (self._sprung(), self.walls.springs, *beside))
+        rows = Rows(np.full((m, 2), -1, np.int64), np.zeros((m, COLUMNS)))
+        world = self.world._replace(box=self.box_at(time))
+        collect(self.given.law, self.given.motion.step, time, world, rows)
+        written = rows.pairs[:, 0] >= 0  # a sphere may have left a solid since
+        return rows.pairs[written], rows.values[written]
+
+    def _sprung(self) -> Array:
+        """Impulses of pairs, (contacts, 3)."""
+        return np.asarray(self.lists.springs[: int(self.lists.own.sum())])
 
     def state(self) -> dict[str, NDArray[Any]]:
         """All arrays that the next step depends on, by particle number."""

@@ -7,10 +7,10 @@ from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import share
 from mesokit.method.spheres.common.contacts.geometry import from_to, from_wall, reach, row
-from mesokit.method.spheres.common.contacts.groups import Solid
+from mesokit.method.spheres.common.contacts.groups import OPENS, Solid
 from mesokit.method.spheres.common.contacts.now import FORCE, GAP, NORMAL, PLACE
 from mesokit.method.spheres.common.contacts.remembered import kept, kept_between
-from mesokit.method.spheres.common.contacts.solid import contact_with
+from mesokit.method.spheres.common.contacts.solid import contact_with, touched
 from mesokit.method.spheres.soft.engine.central import Central
 from mesokit.method.spheres.soft.engine.contact.force import (
     Contact,
@@ -21,7 +21,7 @@ from mesokit.method.spheres.soft.engine.contact.force import (
     meeting,
     surface,
 )
-from mesokit.method.spheres.soft.engine.contact.walls import surface_at, touched
+from mesokit.method.spheres.soft.engine.contact.walls import surface_at
 from mesokit.scalar.jit import generic, scalar
 from mesokit.scalar.vector import added_scaled, dot
 
@@ -49,7 +49,7 @@ def collect(law, i, time, world, rows):
 
 
 @generic
-def collect_beside(solid, law, i, world, rows, c):
+def collect_beside(solid, law, i, time, world, rows, c):
     """Write the contacts of sphere i with a solid, from row c on."""
 
 
@@ -62,7 +62,7 @@ def _(law, i, time, world, rows):
 def _(law, i, time, world, rows):
     c = collect_pairs(law, i, world, rows, rows.begin[i])
     c = collect_walls(law, i, time, world, rows, c)
-    collect_beside(world.walls.solid, law, i, world, rows, c)
+    collect_beside(world.walls.solid, law, i, time, world, rows, c)
 
 
 @scalar
@@ -90,7 +90,7 @@ def collect_walls(law, i, time, world, rows, c):
     r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
-        if distance < reach(bodies, i):
+        if distance < reach(bodies, i) and time < walls.own[w, OPENS]:
             touch = at_wall(0.0, one, surface(distance, out, moves, walls.own, w))
             springs = kept(walls.springs, i * len(walls.rows) + w)
             c = collect_wall(law, touch, springs, rows, c, (bodies.number[i], w), r)
@@ -105,14 +105,14 @@ def collect_wall(law, touch, springs, rows, c, which, r):
     return write(rows, c, (which[0], -1 - which[1]), touch, force, place)
 
 
-collect_beside.register(Nothing)(lambda solid, law, i, world, rows, c: None)
+collect_beside.register(Nothing)(lambda solid, law, i, time, world, rows, c: None)
 
 
 @collect_beside.register(Solid)
-def _(solid, law, i, world, rows, c):
+def _(solid, law, i, time, world, rows, c):
     bodies = world.bodies
     r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
-    for place in touched(law, solid, bodies, i):
+    for place in touched(solid, r, time, reach(bodies, i)):
         if place.term != NO_TERM and place.distance < reach(bodies, i):
             there, b = surface_at(solid, bodies, i, place)
             springs = kept(solid.springs, contact_with(solid, i, place.term))

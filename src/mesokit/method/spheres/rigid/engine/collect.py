@@ -1,0 +1,112 @@
+"""A row for each contact with a force, as observables and trajectories take them."""
+
+from typing import Any, NamedTuple
+
+from mesokit.geometry.protocol import Nothing
+from mesokit.geometry.solids.bodies import NO_TERM
+from mesokit.kernels.kernel import kernel
+from mesokit.method.spheres.common.contacts.geometry import from_to, from_wall, reach, row
+from mesokit.method.spheres.common.contacts.groups import Solid
+from mesokit.method.spheres.common.contacts.now import FORCE, GAP, NORMAL, PLACE
+from mesokit.method.spheres.common.contacts.solid import MOST, body_of, touched
+from mesokit.method.spheres.common.walls import entries
+from mesokit.method.spheres.rigid.engine.find import remembers, write
+from mesokit.method.spheres.rigid.engine.groups import PER_MASS, SHIFT
+from mesokit.method.spheres.rigid.law.cohesion import pull
+from mesokit.scalar.jit import generic, scalar
+from mesokit.scalar.vector import added_scaled, dot, scaled
+
+ZERO = (0.0, 0.0, 0.0)
+
+
+class Rows(NamedTuple):
+    """pairs (rows, 2): numbers of the two, of a wall -1 less that of its row or body; values
+    (rows, 10): see `contacts.now`."""
+
+    pairs: Any
+    values: Any
+
+
+@kernel
+def collect(law, step, time, world, rows):
+    """Write all contacts that had an impulse in the last step; places and normals are those of
+    now."""
+    bodies, lists, c = world.bodies, world.lists, 0
+    for i in range(len(bodies.number)):
+        r, reached = row(bodies.place, i), reach(bodies, i)
+        for s in range(lists.own[i]):
+            slot = lists.begin[i] + s
+            if remembers(lists.springs, slot):
+                j = lists.near[i, s]
+                separation = from_to(world.box, bodies.place, j, r)
+                distance = dot(separation, separation) ** 0.5
+                normal = scaled(1.0 / distance, separation)
+                gap, sign = distance - reached - reach(bodies, j), 1.0
+                one, other = bodies.number[i], bodies.number[j]
+                force = force_of(law, step, lists.springs, slot, normal, gap)
+                place = added_scaled(r, -(reached + 0.5 * gap), normal)
+                if other < one:
+                    one, other, sign = other, one, -1.0
+                c = fill(rows, c, one, other, scaled(sign, normal), scaled(sign, force), place, gap)
+        c = collect_walls(law, step, time, i, world, rows, c)
+        c = collect_beside(world.walls.solid, law, step, time, i, world, rows, c)
+
+
+@scalar
+def force_of(law, step, springs, slot, normal, gap):
+    """The force of a contact, the pull of cohesion included."""
+    whole = scaled(1.0 / step, entries(springs, slot, 0, ZERO))
+    return added_scaled(whole, -pull(law.pull, law.within, gap, 1.0), normal)
+
+
+@scalar
+def fill(rows, c, one, other, normal, force, place, gap):
+    """Write a row; the number of the next one."""
+    rows.pairs[c, 0], rows.pairs[c, 1] = one, other
+    write(rows.values, c, NORMAL, normal)
+    write(rows.values, c, FORCE, force)
+    write(rows.values, c, PLACE, place)
+    rows.values[c, GAP] = gap
+    return c + 1
+
+
+@scalar
+def collect_walls(law, step, time, i, world, rows, c):
+    """Write the contacts of a grain with walls that are rows; the number of the next row."""
+    bodies, walls = world.bodies, world.walls
+    r, reached = row(bodies.place, i), reach(bodies, i)
+    for w in range(len(walls.rows)):
+        slot = i * len(walls.rows) + w
+        if remembers(walls.springs, slot):
+            distance, out, _ = from_wall(walls.rows, w, world.box, r, time)
+            if world.plates.drive[w, PER_MASS] > 0.0:
+                distance -= world.plates.state[w, SHIFT]
+            gap = distance - reached
+            force = force_of(law, step, walls.springs, slot, out, gap)
+            place = added_scaled(r, -distance, out)
+            c = fill(rows, c, bodies.number[i], -1 - w, out, force, place, gap)
+    return c
+
+
+@generic
+def collect_beside(solid, law, step, time, i, world, rows, c):
+    """Write the contacts of a grain with walls of any shape; the number of the next row."""
+
+
+collect_beside.register(Nothing)(lambda solid, law, step, time, i, world, rows, c: c)
+
+
+@collect_beside.register(Solid)
+def _(solid, law, step, time, i, world, rows, c):
+    r, reached = row(world.bodies.place, i), reach(world.bodies, i)
+    for place in touched(solid, r, time, reached + world.lists.skin):
+        for s in range(MOST):
+            slot = i * MOST + s
+            touches = place.term != NO_TERM and solid.terms[i, s] == place.term
+            if touches and remembers(solid.springs, slot):
+                gap, b = place.distance - reached, -1 - len(world.walls.rows)
+                force = force_of(law, step, solid.springs, slot, place.normal, gap)
+                at = added_scaled(r, -place.distance, place.normal)
+                number, other = world.bodies.number[i], b - body_of(solid, place.term)
+                c = fill(rows, c, number, other, place.normal, force, at, gap)
+    return c
