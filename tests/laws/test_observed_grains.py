@@ -14,6 +14,8 @@ from mesokit import (
     Plates,
     RandomStart,
     Rectangle,
+    RigidContact,
+    RigidSpheres,
     Run,
     ShearRheology,
     Simulation,
@@ -23,8 +25,6 @@ from mesokit import (
     Surface,
     SurfaceContact,
 )
-from mesokit.method.spheres.rigid.law.contact import RigidContact
-from mesokit.method.spheres.rigid.section import RigidSpheres
 from tests.helpers.comparisons import comparison
 
 
