@@ -85,10 +85,9 @@ class EnergyBudgetAccumulator(Samples):
             return
         for k, name in enumerate(LOSSES, 4):
             yield Comparison(f"energy lost to {name}", end[k], error[k], unit=UNIT)
-        if self.first:
-            known = math.nan if work else 1.0
+        if self.first and not work:
             what = "energy with losses over that at first"
-            yield Comparison(what, self.books / self.first, 0.0, known, "", work)
+            yield Comparison(what, self.books / self.first, 0.0, 1.0)
 
     def work(self) -> str:
         """A note if walls or a bath do work, which no method counts."""
