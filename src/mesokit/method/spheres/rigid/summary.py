@@ -53,8 +53,7 @@ def _seconds_of_step(case: Case, steps: int, numbers: dict[str, Any]) -> float:
     if case.spheres.solver.tolerance == 0 or driven or not _rests(case):
         return moving
     resting = cost.rigid_seconds(grains, contacts, min(cost.LASTING, numbers["sweeps"]), d)
-    settling = cost.settling_time(case) / (max(steps, 1) * numbers["timestep"])
-    part = min(settling, 1.0)
+    part = cost.settling_part(case, max(steps, 1) * numbers["timestep"])
     return part * moving + (1 - part) * resting
 
 
