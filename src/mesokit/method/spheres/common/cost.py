@@ -188,7 +188,7 @@ def settling_part(case: Case, time: float) -> float:
     return min(settles / time, 1.0) if time > 0 else 1.0
 
 
-def at_rest(case: Case, time: float, soft: float | None = None) -> tuple[str, Row]:
+def cheaper_at_rest(case: Case, time: float, soft: float | None = None) -> tuple[str, Row]:
     """The cheaper method for grains that come to rest within a time, and its row of `mesokit
     check`; hard ones collide ever more often. soft: seconds of soft spheres; stiff ones unless
     given."""
