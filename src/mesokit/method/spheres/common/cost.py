@@ -166,15 +166,15 @@ class Bed(NamedTuple):
 
 
 def bed_of(case: Case) -> Bed:
-    """The bed that the grains of a case with gravity form, at the side to which they fall."""
+    """The bed that the grains of a case form, at the side to which they fall."""
     section, box, d = case.spheres, case.box, case.box.dimension
     number = section.count(box)
     kinds = list(zip(section.counts(box), section.kinds, strict=True))
     diameter = sum(n * kind.mean_power(1) for n, kind in kinds) / number * section.scale(box)
     mass = sum(n * kind.mean_mass(d) for n, kind in kinds) / number
     g = math.hypot(*section.gravity)
-    pairs = zip(section.gravity, box.size, strict=True)
-    height = sum(abs(a) / g * length for a, length in pairs)
+    pairs = zip(section.gravity or (), box.size, strict=False)
+    height = sum(abs(a) / g * length for a, length in pairs) if g > 0 else 0.0
     layers = height * min(section.fraction(box) / AT_REST_FILLED[d], 1.0) / diameter
     return Bed(number, d, diameter, mass, g, layers)
 
