@@ -134,6 +134,9 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "sheared and falling": ({**SHEAR, "gravity = [0, -1]": "gravity = [0, -1]"},
                             ("box.shear_rate = 0.1: not with spheres.gravity = [0, -1]",
                              "repeats along y")),
+    "sheared and low": ({**SHEAR, "[20, 10.5]": "[20, 3.5]\nshear_rate = 0.1",
+                         "number = 30": "number = 10"},
+                        ("box.shear_rate = 0.1: box.size = [20, 3.5]", "at least 3.75 along y")),
     "observable of soft spheres": ({'"wall-force"': '"free-times"'},
                                    ("observe[#1].quantity = 'free-times'", "does not offer it")),
 }  # fmt: skip

@@ -45,7 +45,8 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
         at_rest = not case.walls and not section.gravity
         velocities = thermal_velocities(case.run.seed, own, section.kT, d, at_rest)
         if case.box.sheared:
-            height = known.positions[:, 1] - 0.5 * case.box.size[1]
+            length = case.box.size[1]
+            height = known.positions[:, 1] % length - 0.5 * length
             velocities[:, 0] += case.box.first_rate * height
     if spins is None:
         spins = thermal_spins(case.run.seed, own, section.first_spin_kT, d)
