@@ -11,18 +11,42 @@ from tests.helpers.rigid_grains import rigid
 SIZE, RATE = 8.0, 0.4
 
 
-@pytest.fixture(scope="module")
-def sheared():
+def sheared_box(given=None):
+    spheres = {"packing_fraction": 0.7} if given is None else {}
     return rigid(
-        [SIZE, SIZE], box={"shear_rate": RATE}, packing_fraction=0.7, timestep=0.01,
+        [SIZE, SIZE], box={"shear_rate": RATE}, timestep=0.01, given=given, **spheres,
         kinds=[SphereKind(1.0, spread=0.2)], start=RandomStart(), contact={"friction": 0.4},
     )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def sheared():
+    return sheared_box()
 
 
 def test_the_start_flows_as_the_box_does(sheared):
     height = sheared.positions()[:, 1] - SIZE / 2
     expected = np.stack([RATE * height, 0 * height], axis=1)
     assert sheared.velocities() == pytest.approx(expected, abs=1e-12)
+
+
+def test_no_height_of_a_sheared_box_differs_from_another(sheared):
+    """Grains half a box higher, in the flow of that height, move as before."""
+    places, velocities = sheared.positions(), sheared.velocities()
+    spins = np.zeros(sheared.n)
+    low = sheared_box({"positions": places, "velocities": velocities, "spins": spins})
+    places, velocities = places + [0, SIZE / 2], velocities + [RATE * SIZE / 2, 0]
+    beyond = places[:, 1] >= SIZE
+    places[beyond, 1] -= SIZE
+    velocities[beyond, 0] -= RATE * SIZE
+    high = sheared_box({"positions": places, "velocities": velocities, "spins": spins})
+    for engine in (low, high):
+        engine.advance(50)
+    assert np.abs(low.velocities()[:, 1]).max() > 0.1
+    assert low.lost["friction"] > 0
+    # rounding grows as grains collide
+    assert high.velocities()[:, 1] == pytest.approx(low.velocities()[:, 1], abs=1e-8)
+    assert high.spins() == pytest.approx(low.spins(), abs=1e-8)
 
 
 def test_images_that_slide_keep_off_as_others_do(sheared):
