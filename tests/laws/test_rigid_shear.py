@@ -15,7 +15,8 @@ def sheared_box(given=None):
     spheres = {"packing_fraction": 0.7} if given is None else {}
     return rigid(
         [SIZE, SIZE], box={"shear_rate": RATE}, timestep=0.01, given=given, **spheres,
-        kinds=[SphereKind(1.0, spread=0.2)], start=RandomStart(), contact={"friction": 0.4}, solver=exact(tolerance=1e-9),
+        kinds=[SphereKind(1.0, spread=0.2)], start=RandomStart(), contact={"friction": 0.4},
+        solver=exact(tolerance=1e-9),
     )  # fmt: skip
 
 
