@@ -22,11 +22,12 @@ SOLVERS = {
 
 def bed(dimension=2, solver="coloured", threads=1, skin=None, **given):
     """Grains that fall on a floor that moves along itself."""
+    contact = ALL | ({"rolling": 0.0} if solver == "jacobi" else {})
     size = [10.0, 12.0] if dimension == 2 else [6.0, 6.0, 8.0]
     moving = Surface(velocity=[0.5] + [0.0] * (dimension - 1))
     return rigid(
         size, walls=[Plates("xyz"[dimension - 1], lower=moving)], number=50, kinds=MIXED, kT=0.5,
-        gravity=[0.0] * (dimension - 1) + [-1.0], start=RandomStart(), contact=ALL, timestep=0.02,
+        gravity=[0.0] * (dimension - 1) + [-1.0], start=RandomStart(), contact=contact, timestep=0.01,
         solver=SOLVERS[solver], threads=threads, skin=skin, push_back=0.05, **given,
     )  # fmt: skip
 
@@ -35,7 +36,7 @@ def among_solids(threads=1, skin=None, **_):
     """Grains that fall on a block."""
     return rigid(
         [12, 14], walls=[Plates("y"), Rectangle(centre=[6, 2], size=[7, 3], angle=20)], number=50,
-        kinds=MIXED, kT=0.5, gravity=[0.0, -1.0], start=RandomStart(), contact=ALL, timestep=0.02,
+        kinds=MIXED, kT=0.5, gravity=[0.0, -1.0], start=RandomStart(), contact=ALL, timestep=0.01,
         solver=SOLVERS["coloured"], threads=threads, skin=skin,
     )  # fmt: skip
 
@@ -44,7 +45,7 @@ def sheared(threads=1, skin=None, **_):
     """A dense gas in a sheared box."""
     return rigid(
         [9.0, 8.0], number=60, kinds=[SphereKind(1.0, spread=0.2)], kT=0.1, start=RandomStart(),
-        contact=ALL, timestep=0.02, solver=SOLVERS["coloured"], threads=threads, skin=skin,
+        contact=ALL, timestep=0.01, solver=SOLVERS["coloured"], threads=threads, skin=skin,
         box={"shear_rate": 0.4},
     )  # fmt: skip
 
@@ -58,7 +59,7 @@ SYSTEMS = {
 def test_threads_change_no_bit_with_any_solver(solver):
     one, two, three = (bed(2, solver, threads) for threads in (1, 2, 3))
     for engine in (one, two, three):
-        engine.advance(300)
+        engine.advance(500)
     assert same(one, two)
     assert same(one, three)
     assert len(one.state()["pairs"]) > 20
@@ -68,7 +69,7 @@ def test_threads_change_no_bit_with_any_solver(solver):
 def test_threads_change_no_bit(system):
     one, two, three = (SYSTEMS[system](threads=threads) for threads in (1, 2, 3))
     for engine in (one, two, three):
-        engine.advance(300)
+        engine.advance(500)
     assert same(one, two)
     assert same(one, three)
     assert len(one.state()["pairs"]) > 20
@@ -76,7 +77,7 @@ def test_threads_change_no_bit(system):
 
 @pytest.mark.parametrize("system", list(SYSTEMS))
 def test_a_run_goes_on_from_any_step_to_the_same_bits(system):
-    whole, parts, states = SYSTEMS[system](), [37, 1, 100, 62, 80, 20], []
+    whole, parts, states = SYSTEMS[system](), [137, 1, 100, 162, 80, 20], []
     for steps in parts:
         states.append(whole.state())
         whole.advance(steps)
@@ -92,10 +93,10 @@ def test_a_run_goes_on_from_any_step_to_the_same_bits(system):
 @pytest.mark.parametrize("system", list(SYSTEMS))
 def test_how_far_lists_go_changes_no_bit(system):
     usual = SYSTEMS[system]()
-    usual.advance(300)
-    for skin in (0.1, 0.6):
+    usual.advance(500)
+    for skin in (0.13, 0.5):
         other = SYSTEMS[system](skin=skin)
-        other.advance(300)
+        other.advance(500)
         assert same(usual, other)
 
 

@@ -6,7 +6,9 @@ import numpy as np
 
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
+from mesokit.geometry.solids.solids import Solids
 from mesokit.method.spheres.common.contacts.groups import INVERSE
+from mesokit.method.spheres.common.contacts.listed import Others
 from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.walls import (
     AMPLITUDE,
@@ -18,7 +20,7 @@ from mesokit.method.spheres.common.walls import (
 )
 from mesokit.method.spheres.soft.engine.groups import Motion
 from mesokit.method.spheres.soft.engine.system import SoftSetup, SoftSystem
-from mesokit.method.spheres.soft.laws import contact_of, others_of, three_axes
+from mesokit.method.spheres.soft.laws import contact_of, three_axes
 from mesokit.method.spheres.soft.pair.spring_dashpot import SpringDashpot
 from mesokit.seam.engine import Array
 
@@ -39,9 +41,7 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
     """
     size, gravity = case.box.size, case.spheres.gravity
     walls, (n, d) = surface_rows(case, other_walls(case)).rows, places.shape
-    others = others_of(case, made)
-    if others is not None:
-        others.own[:] = -1.0, friction, math.inf
+    others = _others(case, made, friction)
     g = math.hypot(*gravity)
     height = math.fsum(abs(a) / g * length for a, length in zip(gravity, size, strict=True))
     largest, mass = float(made.diameters.max()), float(made.masses.max())
@@ -90,3 +90,13 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
     raise CaseError(
         "spheres.start: rule = 'poured': they do not come to rest; expected walls that hold them"
     )
+
+
+def _others(case: Case, made: Made, friction: float) -> Others | None:
+    """Walls that are no rows, rough and at rest."""
+    if not (which := other_walls(case)):
+        return None
+    solids = Solids(case.walls, case.box, only=which)
+    own = np.tile([-1.0, friction, math.inf], (len(solids.bodies), 1))
+    away = (0.5 + SKIN) * float(made.diameters.max())
+    return Others(solids.reaching(away), solids.pattern, own, solids)

@@ -124,9 +124,10 @@ def body_of(solid, term):
 
 
 @scalar
-def moves_at(solid, r, term):
-    """Velocity of the surface of a term beside a place."""
-    return lengthened(surface_velocity(solid.bodies.tables, term, shortened(r, solid.pattern)))
+def moves_at(solid, r, place):
+    """Velocity of the surface where it is nearest to a sphere at r."""
+    foot = shortened(added_scaled(r, -place.distance, place.normal), solid.pattern)
+    return lengthened(surface_velocity(solid.bodies.tables, place.term, foot))
 
 
 @scalar

@@ -241,7 +241,7 @@ def _(solid, law, step, time, ahead, i, world, found, room, count, changed):
             f, body = place_for(room, count), body_of(solid, place.term)
             slot = contact_with(solid, i, place.term) * KINDS + TERM
             at = len(world.bodies.number) + f
-            still(world, at, moves_at(solid, r, place.term))
+            still(world, at, moves_at(solid, r, place))
             changed |= put_wall(world, found, room, f, i, slot, rows + place.term, at)
             own, normal = solid.own, first(place.normal, world.flat)
             gap = place.distance - reached

@@ -26,7 +26,7 @@ from mesokit.method.spheres.rigid.engine.find import (
 )
 from mesokit.method.spheres.rigid.engine.groups import DRAG, INVERSE, MOST_COLOURS, PUSH
 from mesokit.method.spheres.rigid.engine.sliding import across
-from mesokit.method.spheres.rigid.engine.sweep import pair_of, part_of, relative
+from mesokit.method.spheres.rigid.engine.sweep import pair_of, part_of, relative, turns
 from mesokit.method.spheres.rigid.law.coulomb import cut
 from mesokit.method.spheres.rigid.law.frame import impulse, parts, sliding
 from mesokit.scalar.fixed_point import quanta
@@ -184,10 +184,9 @@ def count_losses(law, world, order, c, i, j, normal, push, drag, taken):
         along, spin = alongside(flat), spin_at(flat)
         one, other = order.roll[c, ONE], order.roll[c, OTHER]
         torque = entries(order.roll, c, TORQUE, along)
-        turned = scaled(0.0, along)
-        for motion in (world.motion, world.before):
-            turned = added_scaled(turned, 0.5 * one, entries(motion, i, spin, along))
-            turned = added_scaled(turned, -0.5 * other, entries(motion, j, spin, along))
+        now_turns = turns(world.motion, i, j, one, other, along, spin)
+        then_turns = turns(world.before, i, j, one, other, along, spin)
+        turned = scaled(0.5, added(now_turns, then_turns))
         rolling = -dot(torque, turned)
     take(taken, len(taken) - 1, counted((-impact, -friction, -rolling), law.energy_scale))
 
@@ -233,7 +232,8 @@ def fly(step, bodies, box, i, flat):
         if box.inverse[k] != 0.0 and (x < 0.0 or x >= box.size[k]):
             boxes = np.int32(1) if x >= box.size[k] else np.int32(-1)
             x -= float(boxes) * box.size[k]
-            x = x if 0.0 <= x < box.size[k] else 0.0
+            if x >= box.size[k]:  # it was so little below 0 that it has not left
+                x, boxes = 0.0, np.int32(0)
             bodies.images[i, k] += boxes
             if k == 1:
                 shift, speed = across(box, float(boxes), step)

@@ -148,12 +148,21 @@ def update_roll(law, motion, roll, c, i, j, push, flat):
     """Update the angular impulse against rolling."""
     along, spin = alongside(flat), spin_at(flat)
     one, other = roll[c, ONE], roll[c, OTHER]
-    spins = entries(motion, i, spin, along), entries(motion, j, spin, along)
-    turning = added_scaled(scaled(one, spins[0]), -other, spins[1])
+    turning = turns(motion, i, j, one, other, along, spin)
     torque = entries(roll, c, TORQUE, along)
     new = resisted(torque, roll[c, INERTIA], turning, roll[c, LIMIT] * push)
     write(roll, c, TORQUE, new)
     twist(motion, i, j, added_scaled(new, -1.0, torque), one, other, law.per_turn, spin)
+
+
+@scalar
+def turns(motion, i, j, one, other, along, spin):
+    """Difference of angular velocities, of inverse radii `one` and `other`.
+
+    Both products are rounded alike, so that it only changes its sign with the order of the two.
+    """
+    first, second = entries(motion, i, spin, along), entries(motion, j, spin, along)
+    return added(scaled(one, first), scaled(-other, second))
 
 
 @scalar

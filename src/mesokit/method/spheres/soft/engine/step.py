@@ -152,8 +152,10 @@ def fly(bodies, box, i, k, time):
     if box.inverse[k] != 0.0:
         if x < 0.0:
             x += box.size[k]
-            bodies.images[i, k] -= np.int32(1)
-            x = x if x < box.size[k] else 0.0
+            if x < box.size[k]:
+                bodies.images[i, k] -= np.int32(1)
+            else:  # it was so little below 0 that it has not left
+                x = 0.0
         elif x >= box.size[k]:
             x -= box.size[k]
             bodies.images[i, k] += np.int32(1)

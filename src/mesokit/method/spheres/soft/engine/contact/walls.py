@@ -113,7 +113,7 @@ def _(solid, law, i, time, world, readings):
 def surface_at(solid, bodies, i, place):
     """The surface at a place beside sphere i, and the number of its body."""
     body = body_of(solid, place.term)
-    moves = moves_at(solid, row(bodies.place, i), place.term)
+    moves = moves_at(solid, row(bodies.place, i), place)
     return surface(place.distance, place.normal, moves, solid.own, body), body
 
 
