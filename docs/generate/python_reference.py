@@ -19,10 +19,11 @@ GROUPS = (  # page, its title, where its names are; the first that fits decides
     ("fluid", "Fluid, collision rules, thermostats, forces", ("mesokit.method.mpcd",)),
     (
         "spheres",
-        "Event-driven dynamics, soft spheres",
+        "Event-driven dynamics, soft spheres, contact dynamics",
         (
             "mesokit.method.spheres.hard",
             "mesokit.method.spheres.soft",
+            "mesokit.method.spheres.rigid",
             "mesokit.method.spheres.common",
         ),
     ),

@@ -48,13 +48,17 @@ def modules() -> Iterator[ModuleType]:
             yield importlib.import_module(found.name)
 
 
-# Of these the implementations are loops over lanes of a strip, or change lists: the CPU's own.
+# Of these the implementations are loops over lanes of a strip, or over lists: the CPU's own.
 LOOPS = (
     "mesokit.method.kinetic_monte_carlo.engine.change",
     "mesokit.method.kinetic_monte_carlo.engine.choice",
     "mesokit.method.mpcd.engine.beads.links",
     "mesokit.method.mpcd.engine.beads.verlet",
+    "mesokit.method.spheres.rigid.engine.collect",
+    "mesokit.method.spheres.rigid.engine.find",
+    "mesokit.method.spheres.rigid.engine.finish",
     "mesokit.method.spheres.soft.engine.acting",
+    "mesokit.method.spheres.soft.engine.contact.collect",
 )
 
 

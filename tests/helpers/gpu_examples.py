@@ -54,8 +54,10 @@ from mesokit.method.mpcd.streaming import fall, halfway, vector
 from mesokit.method.mpcd.thermostat import protocol as thermostats
 from mesokit.method.spheres.common.contacts import geometry as distances
 from mesokit.method.spheres.common.contacts import groups as touching
+from mesokit.method.spheres.common.contacts import listed, lists
 from mesokit.method.spheres.hard.collision import RULES
 from mesokit.method.spheres.hard.collision import protocol as spheres
+from mesokit.method.spheres.rigid.engine import sliding
 from mesokit.method.spheres.soft.pair import protocol as contacts
 from mesokit.method.spheres.soft.pair.hertz import Hertz as HertzContact
 from mesokit.method.spheres.soft.pair.spring_dashpot import Linear
@@ -102,6 +104,8 @@ def bodies(d: int) -> Bodies:
     return Bodies(vec(d), vec(d), 1, 1.0, vec(d), vec(d), 1, 1, 1, 1.0, 1.0, vec(d), vec(d))
 
 
+CELLS = listed.Grid((WHOLE,) * 3, vec(3), (WHOLE,) * 3, 1.0)
+SLIDING = sliding.Sliding(SteadyShear(0.1).kernel(1.0))
 SPRING, STIFF, REPELS = Harmonic(K=1.0).kernel(), Bending(1.0).kernel(), WCA().kernel()
 
 
@@ -190,6 +194,11 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     lattices.process_of: lambda p, d: (sites(d), WHOLE, 0.5),
     flown: lambda p, d: (vec(d), vec(d), vec(d)),
     distances.shortest: lambda p, d: (vec(3),),
+    lists.seen_from: lambda p, d: (CELLS, 1.0, WHOLE, WHOLE),
+    sliding.box_in_step: lambda p, d: (touching.Box(vec(3), vec(3)), 1.0, 1.0),
+    sliding.slip: lambda p, d: (SLIDING, 1.0, 0.0),
+    sliding.image_speed: lambda p, d: (vec(3),),
+    sliding.across: lambda p, d: (1.0, 1.0),
     spheres.restitution: lambda p, d: (1.0,),
     spheres.next_contact: lambda p, d: (vec(d), vec(d), 1.0, 0.0),
     spheres.step_of_energy: lambda p, d: (1.0, 1.0),
@@ -227,6 +236,7 @@ def parts(d: int) -> Iterator[Any]:
     yield from (Linear(1.0, 0.0, 1.0, 0.0, 1.0), HertzContact(1.0, 1.0, 1.0))
     yield touching.Box(vec(3), vec(3))
     yield touching.SlidBox(vec(3), vec(3), 1.0, 1.0)
+    yield from (sliding.AtRest(), SLIDING)
     yield interactions.Virial(1.0, tensor, 1.0)
     yield Ising().kernel(LATTICES[d], False)
     yield Ising(moves="exchange").kernel(LATTICES[d], False)

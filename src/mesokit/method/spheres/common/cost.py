@@ -33,7 +33,6 @@ FOUND = {2: 0.4e-6, 3: 0.5e-6}  # seconds, of a rigid grain in a step, for its c
 CONTACTS = {2: 1.8, 3: 2.4}  # of rigid grains in a bed, for each grain, near ones included
 SWEEPS = 500  # most in a step, unless said
 ACCURACY = 1e-4  # of the forces of rigid grains, unless said
-RESTING = "once grains rest"
 NAMES = {
     "event-driven": "event-driven",
     "soft-spheres": "soft spheres",
@@ -129,14 +128,6 @@ def sweeps_in_bed(number: int, dimension: int) -> float:
     return min(theory.packing_sweeps(number, dimension, ACCURACY, "coloured"), SWEEPS)
 
 
-def settling_time(case: Case) -> float:
-    """Time after which grains that fall through the box are at rest."""
-    gravity, size = case.spheres.gravity, case.box.size
-    strength = math.hypot(*gravity)
-    height = sum(abs(g) * length for g, length in zip(gravity, size, strict=True)) / strength
-    return SETTLES * math.sqrt(2 * height / strength)
-
-
 class Bed(NamedTuple):
     """Grains that lie on one another: their number, dimension, mean diameter and mass; strength of
     gravity, and the height of the bed over a diameter."""
@@ -148,12 +139,14 @@ class Bed(NamedTuple):
     gravity: float
     layers: float
 
-    @property
-    def seconds_of_rigid(self) -> float:
-        """Seconds of a core for a unit of time of contact dynamics, with the usual keys."""
+    def seconds_of_rigid(self, time: float, settling: float) -> float:
+        """Seconds of a core for a time of contact dynamics with the usual keys; settling: the part
+        of it in which grains move, and forces change."""
         d, step = self.dimension, math.sqrt(2 * self.diameter / self.gravity) / STEPS_OF_FALL
-        contacts = CONTACTS[d] * self.number
-        return rigid_seconds(self.number, contacts, sweeps_in_bed(self.number, d), d) / step
+        contacts, sweeps = CONTACTS[d] * self.number, sweeps_in_bed(self.number, d)
+        moving = rigid_seconds(self.number, contacts, sweeps, d)
+        resting = rigid_seconds(self.number, contacts, LASTING, d)
+        return (settling * moving + (1 - settling) * resting) * time / step
 
     @property
     def stiffness_as_hard(self) -> float:
@@ -173,30 +166,40 @@ class Bed(NamedTuple):
 
 
 def bed_of(case: Case) -> Bed:
-    """The bed that the grains of a case with gravity form, at the side to which they fall."""
+    """The bed that the grains of a case form, at the side to which they fall."""
     section, box, d = case.spheres, case.box, case.box.dimension
     number = section.count(box)
     kinds = list(zip(section.counts(box), section.kinds, strict=True))
     diameter = sum(n * kind.mean_power(1) for n, kind in kinds) / number * section.scale(box)
     mass = sum(n * kind.mean_mass(d) for n, kind in kinds) / number
     g = math.hypot(*section.gravity)
-    pairs = zip(section.gravity, box.size, strict=True)
-    height = sum(abs(a) / g * length for a, length in pairs)
+    pairs = zip(section.gravity or (), box.size, strict=False)
+    height = sum(abs(a) / g * length for a, length in pairs) if g > 0 else 0.0
     layers = height * min(section.fraction(box) / AT_REST_FILLED[d], 1.0) / diameter
     return Bed(number, d, diameter, mass, g, layers)
 
 
-def at_rest(case: Case, soft: float | None = None) -> tuple[str, Row]:
-    """The cheaper method for grains that come to rest, and its row of `mesokit check`; hard ones
-    collide ever more often. soft: seconds of soft spheres for a unit of time; None if stiff."""
+def settling_part(case: Case, time: float) -> float:
+    """Part of a time after which grains that fall through the box are at rest."""
+    gravity, size = case.spheres.gravity, case.box.size
+    strength = math.hypot(*gravity)
+    height = sum(abs(g) * length for g, length in zip(gravity, size, strict=True)) / strength
+    settles = SETTLES * math.sqrt(2 * height / strength)
+    return min(settles / time, 1.0) if time > 0 else 1.0
+
+
+def cheaper_at_rest(case: Case, time: float, soft: float | None = None) -> tuple[str, Row]:
+    """The cheaper method for grains that come to rest within a time, and its row of `mesokit
+    check`; hard ones collide ever more often. soft: seconds of soft spheres; stiff ones unless
+    given."""
     bed = bed_of(case)
-    rigid = bed.seconds_of_rigid
     if soft is None:
-        soft = bed.seconds_of_soft(bed.stiffness_as_hard)
-    name, factor = (
-        ("soft-spheres", rigid / soft) if soft < rigid else ("contact-dynamics", soft / rigid)
-    )
-    return name, ("cheaper", NAMES[name], f"{RESTING}, about {float(f'{factor:.2g}'):g} times")
+        soft = time * bed.seconds_of_soft(bed.stiffness_as_hard)
+    rigid = bed.seconds_of_rigid(time, settling_part(case, time))
+    name = "soft-spheres" if soft < rigid else "contact-dynamics"
+    more, less = max(soft, rigid), min(soft, rigid)
+    factor = more / less if less > 0 else 1.0
+    return name, ("cheaper", NAMES[name], f"once grains rest, about {factor:.2g} times")
 
 
 def contact_time_as_hard(flight: Flight) -> float:

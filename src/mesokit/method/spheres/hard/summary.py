@@ -71,7 +71,7 @@ def _beside(
         f"a free flight {float(f'{per_flight:.3g}'):g}",
     )
     if rests:
-        numbers["cheaper"], row = cost.at_rest(case)
+        numbers["cheaper"], row = cost.cheaper_at_rest(case, time)
     yield row
 
 

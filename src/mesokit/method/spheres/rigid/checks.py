@@ -104,6 +104,13 @@ def _check_shear(case: Case) -> None:
                 f"{given}: not with wall[#{i + 1}].axis = {show(axis)}: the box repeats along x "
                 "and y; expected plates that move along themselves, and no shear of the box"
             )
+    # with fewer cells across the flow, lists look along x where a neighbour was before it slid
+    least = 3.001 * (case.spheres.reach(box) + scales.skin_of(case))
+    if box.size[1] < least:
+        raise CaseError(
+            f"{given}: box.size = {show(list(box.size))}: expected at least {least:.3g} along y, "
+            "three times the length of neighbour lists"
+        )
     for axis, g in zip(box.axes, case.spheres.gravity, strict=False):
         if g and axis != "z":
             raise CaseError(

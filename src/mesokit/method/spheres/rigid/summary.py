@@ -8,7 +8,9 @@ from mesokit import theory
 from mesokit.case.amounts import duration_text, number
 from mesokit.case.case import Case
 from mesokit.case.component import name_of, show
+from mesokit.geometry import walls
 from mesokit.geometry.shape.plates import Plates
+from mesokit.geometry.surface import SurfaceContact
 from mesokit.method.spheres.common import cost
 from mesokit.method.spheres.common.checks import rubs, warnings_of_falls
 from mesokit.method.spheres.common.kinds import ball_volume
@@ -53,8 +55,7 @@ def _seconds_of_step(case: Case, steps: int, numbers: dict[str, Any]) -> float:
     if case.spheres.solver.tolerance == 0 or driven or not _rests(case):
         return moving
     resting = cost.rigid_seconds(grains, contacts, min(cost.LASTING, numbers["sweeps"]), d)
-    settling = cost.settling_time(case) / (max(steps, 1) * numbers["timestep"])
-    part = min(settling, 1.0)
+    part = cost.settling_part(case, max(steps, 1) * numbers["timestep"])
     return part * moving + (1 - part) * resting
 
 
@@ -81,33 +82,43 @@ def _motion(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
     if inertial is not None:
         numbers["inertial_number"] = inertial
         flow = "quasi-static" if inertial < 1e-3 else "dense flow" if inertial < 0.3 else "a gas"
-        yield "inertial number", number(inertial), f"at half of the height: {flow}"
+        yield "inertial number", number(inertial), f"by the speed of plates: {flow}"
 
 
 def inertial_number(case: Case) -> float | None:
-    """Inertial number of grains between plates that move along themselves, under their weight;
-    None unless they fill the space between two plates across gravity."""
-    box, section, d = case.box, case.spheres, case.box.dimension
-    plates = [wall for wall in case.walls if isinstance(wall, Plates)]
-    along = [axis for axis, g in zip(box.axes, section.gravity, strict=False) if g]
-    across = [wall for wall in plates if along == [wall.axis]]
-    if not across or section.fraction(box) < DENSE * cost.AT_REST_FILLED[d]:
-        return None
-    faces = [surface.velocity or (0.0,) * d for surface in across[0].surfaces().values()]
-    speed, length = math.dist(*faces), box.size[box.axes.index(along[0])]
-    if speed == 0:
-        return None
-    bed = cost.bed_of(case)
-    pressure = 0.5 * bed.number * bed.mass * bed.gravity * length / box.volume
-    density = bed.mass / ball_volume(d, bed.diameter)
-    found = theory.inertial_number(speed / length, pressure, bed.diameter, density, d)
-    return float(found)
+    """Inertial number of grains between plates that move along themselves: under the pressure of a
+    plate, or at half of the height under their weight; None where neither shears them."""
+    box, d = case.box, case.box.dimension
+    for wall in (wall for wall in case.walls if isinstance(wall, Plates)):
+        k, faces = box.axes.index(wall.axis), list(wall.surfaces().values())
+        speed = math.dist(*(face.velocity or (0.0,) * d for face in faces))
+        area, length = box.volume / box.size[k], box.size[k]
+        bed = cost.bed_of(case)
+        deep = bed.number * ball_volume(d, bed.diameter) / (cost.AT_REST_FILLED[d] * area)
+        pressure = max((_pressure(face.contact, area) for face in faces), default=0.0)
+        falls = [abs(g) > 0 for g in case.spheres.gravity]
+        if pressure == 0 and falls == [i == k for i in range(d)] and deep > DENSE * length:
+            pressure, deep = 0.5 * bed.number * bed.mass * bed.gravity / area, length
+        if speed > 0 and pressure > 0:
+            density = bed.mass / ball_volume(d, bed.diameter)
+            rate = speed / min(deep, length)
+            return float(theory.inertial_number(rate, pressure, bed.diameter, density, d))
+    return None
+
+
+def _pressure(contact: SurfaceContact | None, area: float) -> float:
+    """Pressure by which a plate is pushed into the box."""
+    return 0.0 if contact is None else contact.pressure or (contact.force or 0.0) / area
 
 
 def crowded(case: Case) -> bool:
-    """Whether grains come to touch in chains: under gravity, or as dense as a bed."""
+    """Whether grains come to touch in chains: under gravity, pushed by a plate, or as dense as a
+    bed."""
     section, filled = case.spheres, cost.AT_REST_FILLED[case.box.dimension]
-    return bool(section.gravity) or section.fraction(case.box) > DENSE * filled
+    contacts = [surface.contact for _, surface, _ in walls.surfaces(case)]
+    pushed = any(c is not None and (c.force or c.pressure or c.speed > 0) for c in contacts)
+    dense = section.fraction(case.box) > DENSE * filled
+    return bool(section.gravity) or pushed or dense
 
 
 def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:

@@ -83,7 +83,7 @@ def _beside(case: Case, steps: int, core_seconds: float, numbers: dict[str, Any]
             "estimate: event-driven, while they fly as at first",
         )
     if cost.comes_to_rest(case, _loses(case), section.thermostat is not None):
-        numbers["cheaper"], row = cost.at_rest(case, core_seconds / time if time else None)
+        numbers["cheaper"], row = cost.cheaper_at_rest(case, time, core_seconds)
         yield row
     elif flight is not None:
         name = "soft-spheres" if core_seconds < hard else "event-driven"

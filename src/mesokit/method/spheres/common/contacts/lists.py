@@ -6,8 +6,9 @@ from mesokit.kernels.kernel import kernel
 from mesokit.loops.cells import cell_after, cell_along, cell_of, runs_around
 from mesokit.loops.layout import share
 from mesokit.method.spheres.common.contacts.geometry import row, shortest
-from mesokit.method.spheres.common.contacts.groups import IN_ALL, NEVER
-from mesokit.scalar.jit import scalar
+from mesokit.method.spheres.common.contacts.groups import IN_ALL, NEVER, Box, SlidBox
+from mesokit.scalar.intrinsics import floor
+from mesokit.scalar.jit import generic, scalar
 from mesokit.scalar.vector import dot
 
 GROUP = 8  # lists are filled up to whole groups, for which loops over vectors need no rest
@@ -54,7 +55,9 @@ def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
                 side = off(grid, 1, y, y_cell, b)
                 if min(y_there, z_there) >= 0 and up * up + side * side <= grid.farthest:
                     line = grid.cells[0] * (y_there + grid.cells[1] * z_there)
-                    for span in runs_around(grid, box, begins, line, x_cell, grid.wide[0]):
+                    boxes = (y_cell + b - y_there) // grid.cells[1]
+                    middle = seen_from(box, grid, bodies.place[i, 0], x_cell, boxes)
+                    for span in runs_around(grid, box, begins, line, middle, grid.wide[0]):
                         found = list_span(columns, box, lists, i, span, found, beside)
         if lists.once != NEVER:
             lists.own[i] = own_first(lists, i, found, 0 if lists.once == IN_ALL else first)
@@ -64,6 +67,23 @@ def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
             lists.near[i, s] = np.int32(i)
         for k in range(3):
             lists.made_at[i, k] = bodies.place[i, k]
+
+
+@generic
+def seen_from(box, grid, x, x_cell, boxes):
+    """Cell along x of a place, as seen from a number of images above: these may have slid."""
+
+
+seen_from.register(Box)(lambda box, grid, x, x_cell, boxes: x_cell)
+
+
+@seen_from.register(SlidBox)
+def _(box, grid, x, x_cell, boxes):
+    if boxes == 0:
+        return x_cell
+    there = x - float(boxes) * box.offset
+    there -= floor(there * box.inverse[0]) * box.size[0]
+    return cell_along(grid, 0, there if there < box.size[0] else 0.0)
 
 
 @scalar

@@ -35,7 +35,8 @@ class Started(NamedTuple):
 def first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
     """Places, velocities and spins of all. Raises CaseError for arrays that do not fit.
 
-    Velocities and spins that are not given are drawn. Only hard spheres must not overlap.
+    Velocities and spins that are not given are drawn, about the flow of a sheared box. Only hard
+    spheres must not overlap.
     """
     section, d, own = case.spheres, case.box.dimension, made(case)
     known = given_state(case, own, arrays)
@@ -43,6 +44,10 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
     if velocities is None:
         at_rest = not case.walls and not section.gravity
         velocities = thermal_velocities(case.run.seed, own, section.kT, d, at_rest)
+        if case.box.sheared:
+            length = case.box.size[1]
+            height = known.positions[:, 1] % length - 0.5 * length
+            velocities[:, 0] += case.box.first_rate * height
     if spins is None:
         spins = thermal_spins(case.run.seed, own, section.first_spin_kT, d)
     if arrays.get("positions") is not None or section.start.files():
