@@ -140,10 +140,8 @@ class ContactNetworkAccumulator(GroupAccumulator):
             apart, slope = float(values[1] - values[0]), gradients[-1] - gradients[0]
             turn = self._gradient(vectors[:, 0], first) / (apart or 1.0)
             known = mean.scalar(angle, np.degrees(turn), over=(apart, slope))
-            note = "" if np.isfinite(known[0]) else "none: the fabric is isotropic within its error"
-            yield Comparison(
-                "direction of most contacts, from x", *known, unit="degrees", note=note
-            )
+            note = "from x" if np.isfinite(known[0]) else "none: isotropic within the error"
+            yield Comparison("direction of most contacts", *known, unit="degrees", note=note)
             return
         for axis, part in zip("xyz", first, strict=True):
             yield Comparison(f"direction of most contacts along {axis}", abs(part), np.nan)
