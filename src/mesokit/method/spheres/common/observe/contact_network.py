@@ -56,12 +56,12 @@ class ContactNetworkAccumulator(GroupAccumulator):
     def observe(self, spheres: TouchingSpheres) -> None:
         found, n = self.contacts_of(spheres), spheres.n
         between, numbers = ~found.at_walls, np.arange(n)
-        number = counted(found.pairs, n)
+        number = contacts_of_each(found.pairs, n)
         kept = bearers(found.pairs, n, self.fewest)
         ends = kept[found.pairs[:, 0]] & (kept[found.pairs[:, 1]] | found.at_walls)
         inside = found.pairs[ends]
         # Each contact counts twice: once for each of two grains, or twice for the one at a wall.
-        halves = counted(inside, n) + np.bincount(inside[inside[:, 1] < 0, 0], minlength=n)
+        halves = contacts_of_each(inside, n) + np.bincount(inside[inside[:, 1] < 0, 0], minlength=n)
         rows = np.zeros((n, self.width))
         rows[:, GRAINS], rows[:, TOUCHING], rows[:, RATTLERS] = 1.0, number, ~kept
         rows[:, BEARERS], rows[:, HALVES] = kept, halves
@@ -152,7 +152,7 @@ class ContactNetworkAccumulator(GroupAccumulator):
         return np.array(parts)
 
 
-def counted(pairs: NDArray[np.int64], n: int) -> NDArray[np.int64]:
+def contacts_of_each(pairs: NDArray[np.int64], n: int) -> NDArray[np.int64]:
     """Number of contacts (n,) of each grain, with grains and walls."""
     return np.bincount(pairs[pairs >= 0], minlength=n)
 
@@ -167,7 +167,7 @@ def bearers(pairs: NDArray[np.int64], n: int, fewest: int) -> NDArray[np.bool_]:
     kept = np.ones(n, bool)
     while True:
         inside = kept[pairs[:, 0]] & (kept[pairs[:, 1]] | (pairs[:, 1] < 0))
-        left = kept & (counted(pairs[inside], n) >= fewest)
+        left = kept & (contacts_of_each(pairs[inside], n) >= fewest)
         if np.array_equal(left, kept):
             return kept
         kept = left
