@@ -20,7 +20,7 @@ from mesokit import (
 )
 from mesokit.method.spheres.common.contacts.now import Contacts
 from mesokit.method.spheres.common.observe.bearing import bearing
-from mesokit.method.spheres.common.observe.contact_network import bearers
+from mesokit.method.spheres.common.observe.contact_network import bearers, derivative
 from tests.helpers.comparisons import by_name
 from tests.helpers.grains import grains
 from tests.helpers.soft_spheres import at_rest
@@ -207,10 +207,39 @@ def test_fabric_of_contacts_with_a_known_direction():
     assert said["direction of most contacts"].error == pytest.approx(turn, rel=0.75)
 
 
+@pytest.mark.parametrize("d", [2, 3])
+def test_derivatives_of_a_form_are_those_by_each_entry(d):
+    rng = np.random.default_rng(8)
+    half, one, other = rng.normal(size=(d, d)), rng.normal(size=d), rng.normal(size=d)
+    tensor = half + half.T
+    entries = tensor[np.triu_indices(d)]
+    assert derivative(one, other) @ entries == pytest.approx(one @ tensor @ other)
+
+
+def test_samples_of_a_network_at_rest_make_no_error_smaller():
+    rng = np.random.default_rng(9)
+    one = state(random_pairs(rng, 800), turned(rng, 800), rng.exponential(1.0, 800))
+    single, said = measured(ContactForces(), [one])
+    many, said_of_many = measured(ContactForces(), [one] * 200)
+    assert many.error == pytest.approx(single.error)
+    assert (single.error[single.value > 0] > 0).all()
+    for name in ("mean normal force", "decay above the mean, beta"):
+        assert said_of_many[name].error == pytest.approx(said[name].error)
+
+
 def test_fabric_in_space_has_three_eigenvalues():
     rng, m = np.random.default_rng(7), 2000
     normals = np.concatenate([np.tile([0.0, 0.0, 1.0], (m, 1)), np.tile([1.0, 0.0, 0.0], (m, 1))])
     pairs, case = random_pairs(rng, 2 * m), case_of(d=3)
+    wide = rng.normal(size=(2 * m, 3)) * [1.0, 1.0, 2.0]
+    wide /= np.linalg.norm(wide, axis=1, keepdims=True)
+    _, upright = measured(ContactNetwork(), [state(pairs, wide, 1.0)], case)
+    parts = [upright[f"direction of most contacts along {axis}"] for axis in "xyz"]
+    # of z, beside which x and y are small and have errors; abs(z) has its error in second order
+    assert parts[2].measured == pytest.approx(1.0, abs=0.01)
+    assert parts[2].error < 0.1 * parts[0].error
+    for part in parts[:2]:
+        assert part.measured < 4 * part.error < 0.2
     _, said = measured(ContactNetwork(), [state(pairs, normals, np.repeat([1.0, 0.5], m))], case)
     values = [said[f"fabric eigenvalue {k}"].measured for k in (1, 2, 3)]
     assert values == pytest.approx([0.5, 0.5, 0.0])
