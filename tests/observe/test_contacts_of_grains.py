@@ -16,11 +16,14 @@ from mesokit import (
     Run,
     Simulation,
     SoftSpheres,
+    SphereKind,
     SpringDashpot,
 )
 from mesokit.method.spheres.common.contacts.now import Contacts
 from mesokit.method.spheres.common.observe.bearing import bearing
 from mesokit.method.spheres.common.observe.contact_network import bearers, derivative
+from mesokit.method.spheres.rigid.law.contact import RigidContact
+from mesokit.method.spheres.rigid.section import RigidSpheres
 from tests.helpers.comparisons import by_name
 from tests.helpers.grains import grains
 from tests.helpers.soft_spheres import at_rest
@@ -244,6 +247,28 @@ def test_fabric_in_space_has_three_eigenvalues():
     values = [said[f"fabric eigenvalue {k}"].measured for k in (1, 2, 3)]
     assert values == pytest.approx([0.5, 0.5, 0.0])
     assert said["coordination without rattlers"].expected == pytest.approx(4.0, abs=0.01)
+
+
+@pytest.mark.long
+def test_rigid_grains_without_friction_are_isostatic():
+    """300 poured disks in a bin: twice the contacts over the grains is 2 d = 4."""
+    case = Case(
+        run=Run(400, method="contact-dynamics", warmup=1600, seed=2),
+        box=Box([22, 30]),
+        walls=[Plates("y"), Plates("x")],
+        spheres=RigidSpheres(
+            number=300, kinds=[SphereKind(1.0, spread=0.2)], gravity=[0.0, -1.0], kT=0.01,
+            start=RandomStart(), contact=RigidContact(friction=0.0), timestep=0.02,
+        ),
+        observe=[ContactNetwork(every=20)],
+    )  # fmt: skip
+    simulation = Simulation(case, threads=1)
+    simulation.run()
+    said = by_name(simulation["contact-network"])
+    found = said["coordination without rattlers"]
+    assert found.expected == 4.0
+    assert abs(found.measured - 4.0) < 4 * found.error < 0.3
+    assert said["share of rattlers"].measured < 0.05
 
 
 # --- in runs ------------------------------------------------------------------------------------
