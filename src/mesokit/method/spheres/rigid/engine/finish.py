@@ -148,7 +148,7 @@ def finish(worker, law, step, world, order, total, taken):
     d, flat, contact = len(world.flat), world.flat, order.contact
     first_contact, last = share(total, worker.thread, worker.threads)
     for c in range(np.uint64(first_contact), np.uint64(last)):
-        i, j = pair_of(order, c)
+        i, j = pair_of(order.pair, c)
         normal = entries(contact, c, 0, flat)
         push, drag = contact[c, d + PUSH], entries(contact, c, d + DRAG, alongside(flat))
         rolling = (0.0, 0.0, 0.0)
@@ -213,7 +213,7 @@ def push_some_back(law, world, order, low, high):
     """The same of the contacts from number `low` to before `high`."""
     place, motion, flat, n = world.bodies.place, world.motion, world.flat, len(world.bodies.number)
     for c in range(np.uint64(low), np.uint64(high)):
-        i, j = pair_of(order, c)
+        i, j = pair_of(order.pair, c)
         if order.beside[c, GAP] < 0.0:
             both = motion[i, INVERSE] + motion[j, INVERSE]
             depth = -law.push_back * order.beside[c, GAP] / both
