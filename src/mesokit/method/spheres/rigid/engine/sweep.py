@@ -348,7 +348,7 @@ def solve(worker, law, solver, counter, world, order, total, noted):
         mine[LARGEST], mine[TOP] = seen.change, seen.top
         mine[SUM], mine[TOUCHING] = float(seen.sum), float(seen.touching)
         barrier(worker)
-        change, top, parts, touching = 0.0, 0.0, 0.0, 0
+        change, top, parts, touching = 0.0, 0.0, 0.0, np.int64(0)
         for t in range(worker.threads):
             change, top = max(change, noted[t, LARGEST]), max(top, noted[t, TOP])
             parts += noted[t, SUM]
