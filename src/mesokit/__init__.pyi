@@ -191,6 +191,8 @@ from mesokit.method.mpcd.thermostat.protocol import Thermostat as Thermostat
 from mesokit.method.mpcd.thermostat.rescale import Rescale as Rescale
 from mesokit.method.spheres.common.kinds import SphereKind as SphereKind
 from mesokit.method.spheres.common.observe.cluster_size import ClusterSize as ClusterSize
+from mesokit.method.spheres.common.observe.contact_forces import ContactForces as ContactForces
+from mesokit.method.spheres.common.observe.contact_network import ContactNetwork as ContactNetwork
 from mesokit.method.spheres.common.observe.energy_budget import EnergyBudget as EnergyBudget
 from mesokit.method.spheres.common.observe.granular_temperature import (
     GranularTemperature as GranularTemperature,

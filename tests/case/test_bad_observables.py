@@ -21,6 +21,7 @@ SPREAD = {"number = 30": "number = 30\nkinds = [{ spread = 0.1 }]"}
 KINDS = {"number = 30": "number = 30\nkinds = [{ diameter = 1 }, { diameter = 2 }]"}
 LOSSY = {"number = 30": 'number = 30\ncollision = { rule = "hard", restitution = 0.9 }'}
 FALL = {"number = 30": "number = 30\ngravity = [0, -1]"}
+ATOMS = {"number = 30": 'number = 30\npair = { rule = "wca" }'}
 PLATES = '[[wall]]\nshape = "plates"\naxis = "{}"\n'
 # (good case, what is replaced, walls, quantity, its keys, what the message must say)
 BAD: list[tuple[str, dict[str, str], str, str, str, tuple[str, ...]]] = [
@@ -57,6 +58,19 @@ BAD: list[tuple[str, dict[str, str], str, str, str, tuple[str, ...]]] = [
      ("observe[#1] (wall-stress): wall[#1].upper.rule = 'diffuse'", "observe 'forces'")),
     (FLUID, {}, "", "wall-stress", "", ("observe[#1]", "one [[wall]] of shape 'plates'")),
     (HARD, {}, "", "wall-force", "", ("observe[#1]", "[[wall]]")),
+    (HARD, {}, "", "contact-forces", "", ("observe[#1].quantity", "does not offer")),
+    (HARD, {}, "", "contact-network", "", ("observe[#1].quantity", "does not offer")),
+    (SOFT, ATOMS, "", "contact-forces", "", ("spheres.pair = { rule = 'wca' }", "law of contact")),
+    (SOFT, ATOMS, "", "contact-network", "", ("spheres.pair = { rule = 'wca' }", "law of contact")),
+    (SOFT, {}, "", "contact-forces", 'of = "friction"', ("of = 'friction'", "'normal'")),
+    (SOFT, {}, "", "contact-forces", 'of = "tangential"', ("of = 'tangential'", "'friction'")),
+    (SOFT, {}, "", "contact-forces", "bins = 2", ("bins = 2", "at least 4")),
+    (SOFT, {}, "", "contact-forces", "largest = 0.5", ("largest = 0.5", "at least 1")),
+    (SOFT, {}, "", "contact-forces", "least = -1", ("least = -1", "at least 0")),
+    (SOFT, {}, "", "contact-network", "least = -1", ("least = -1", "at least 0")),
+    (SOFT, {}, "", "contact-network", "bins = 9", ("observe[#1].bins", "unknown")),
+    (SOFT, ONE, "", "contact-forces", "", ("observe[#1]", "1 sphere; expected 2")),
+    (SOFT, {}, "", "contact-force", "", ("quantity = 'contact-force'", "'contact-forces'")),
     (HARD, {}, "", "height-profile", "", ("observe[#1]", "gravity along one axis")),
     (HARD, FALL, PLATES.format("y"), "height-profile", "bins = 1", ("bins = 1", "at least 2")),
     (SOFT, {}, PLATES.format("y"), "height-profile", "", ("observe[#1]", "gravity")),

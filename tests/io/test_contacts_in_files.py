@@ -86,7 +86,7 @@ def test_a_run_that_stops_and_goes_on_has_the_same_contacts(ended, tmp_path):
     second.run()
     parts = mesokit.open(tmp_path / "run").trajectory.read("contact")
     assert same(parts, whole[:3]) == [True] * 3
-    third = Simulation.resume(tmp_path / "run", threads=2, steps=10_000)  # frames of the data file
+    third = Simulation.resume(tmp_path / "run", threads=1, steps=10_000)  # frames of the data file
     third.run()
     assert same(mesokit.open(tmp_path / "run").trajectory.read("contact"), whole) == [True] * 5
 

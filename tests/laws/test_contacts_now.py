@@ -3,8 +3,17 @@
 import numpy as np
 import pytest
 
-from mesokit import Disk, LennardJones, Plates, RandomStart, SpringDashpot, Surface
+from mesokit import (
+    Disk,
+    LennardJones,
+    Plates,
+    RandomStart,
+    Rectangle,
+    SpringDashpot,
+    Surface,
+)
 from mesokit.method.spheres.common.contacts.now import in_order
+from tests.helpers.rigid_grains import exact, rigid
 from tests.helpers.soft_spheres import at_rest, pile, soft
 
 ROLLING = SpringDashpot(0.4, contact_time=0.02, friction=0.5, rolling=0.1)
@@ -99,3 +108,47 @@ def test_contacts_of_a_potential_are_none_and_faces_of_one_surface_have_an_order
     found = in_order(pairs, values, 2, lambda places: places)
     assert found.pairs.tolist() == [[0, 1], [2, -1], [2, -1]]
     assert found.places[:, 0].tolist() == [9.0, 1.0, 3.0]
+
+
+def rigid_pile(threads=1):
+    """The same walls, with rigid grains that touch or fall."""
+    engine = rigid(
+        [16, 14], walls=[Plates("y"), Rectangle(centre=[8, 2], size=[9, 3], angle=20)], number=60,
+        kT=0.5, gravity=[0.0, -2.0], start=RandomStart(), timestep=0.01, threads=threads,
+        contact={"friction": 0.5},
+    )  # fmt: skip
+    engine.advance(400)
+    return engine
+
+
+def test_forces_of_rigid_contacts_change_velocities_as_they_did_in_the_last_step():
+    engine = rigid_pile()
+    before = engine.velocities().copy()
+    engine.advance(1)
+    change = (engine.velocities() - before) / engine.timestep - np.array([0.0, -2.0])
+    found = engine.contacts()
+    wanted = engine.masses()[:, None] * change
+    assert found.at_walls.sum() > 3
+    assert (~found.at_walls).sum() > 20
+    assert on_each(engine, found) == pytest.approx(wanted, abs=1e-9 * np.abs(wanted).max())
+    # normals are those of now, so they have turned since the impulses were found
+    turned = 2 * np.linalg.norm(before, axis=1).max() * engine.timestep
+    size = np.linalg.norm(found.forces, axis=1)
+    assert (found.normal_forces >= -turned * size).all()
+    assert (found.tangential_forces <= 0.5 * found.normal_forces + 1.5 * turned * size).all()
+
+
+def test_a_column_of_rigid_grains_carries_its_weight_contact_by_contact():
+    places = [[3.0, 0.5 + k] for k in range(5)]
+    engine = rigid(
+        [6.0, 8.0], walls=[Plates("y")], given=at_rest(places), gravity=[0.0, -2.0],
+        timestep=0.01, solver=exact(),
+    )  # fmt: skip
+    engine.advance(5)
+    found = engine.contacts()
+    assert found.pairs.tolist() == [[0, -1], [0, 1], [1, 2], [2, 3], [3, 4]]
+    # each grain is pushed up from below, and the first of a pair down by those above
+    wanted = [10.0, -8.0, -6.0, -4.0, -2.0]
+    assert found.forces[:, 1] == pytest.approx(wanted, rel=1e-6)
+    assert found.normals[:, 1].tolist() == [1.0, -1.0, -1.0, -1.0, -1.0]
+    assert found.places[:, 1] == pytest.approx([0.0, 1.0, 2.0, 3.0, 4.0], abs=1e-3)

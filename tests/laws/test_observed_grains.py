@@ -7,12 +7,15 @@ from mesokit import (
     Box,
     Case,
     EnergyBudget,
+    GranularTemperature,
     HardCollision,
     HardSpheres,
     Outflow,
     Plates,
     RandomStart,
     Rectangle,
+    RigidContact,
+    RigidSpheres,
     Run,
     ShearRheology,
     Simulation,
@@ -102,3 +105,28 @@ def test_disks_between_plates_rub_as_da_cruz_and_others_say():
     assert abs(ratio.measured / ratio.expected - 1) < 0.15
     assert abs(fraction.measured / fraction.expected - 1) < 0.03
     assert 1e-3 < result["inertial number"].measured < 0.1
+
+
+def test_rigid_grains_cool_by_haffs_law_and_their_books_close():
+    case = Case(
+        run=Run(2500, method="contact-dynamics"),
+        box=Box([40, 40]),
+        observe=[GranularTemperature(every=20), EnergyBudget(every=20)],
+        spheres=RigidSpheres(
+            packing_fraction=0.1,
+            kT=1.0,
+            start=RandomStart(),
+            timestep=0.01,
+            contact=RigidContact(friction=0.0, restitution=0.8),
+        ),
+    )
+    simulation = Simulation(case)
+    simulation.run()
+    found = comparison(simulation["granular-temperature"], "temperature at t = ")
+    assert abs(found.measured - found.expected) < 3 * found.error
+    budget = simulation["energy-budget"]
+    books = comparison(budget, "over that at first")
+    assert books.measured == pytest.approx(1.0, rel=1e-9)
+    held = simulation.engine.energies()
+    assert budget.value[-1, 0] == held["translation"] and held["rotation"] == 0.0
+    assert budget["energy lost to impact"].measured == budget["energy lost"].measured > 100

@@ -278,6 +278,20 @@ def test_plates_give_stress_ratio_and_inertial_number(sign):
     assert np.nanmax(abs(result.fit - result.value)) < 0.05
 
 
+def test_a_flow_that_builds_up_is_not_steady():
+    observable = ShearRheology(margin=0.0)
+    case = hard([observable], number=100, size=(10, 20), walls=[Plates("y")])
+    rows = np.random.default_rng(7).random((100, 2)) * [10, 20]
+    spheres = Placed(case, lambda time: rows, np.zeros((2, 2)))
+    accumulator, noise = observable.accumulator(case), np.random.default_rng(8)
+    for k in range(41):
+        spheres.advance(1)
+        rate = 0.02 * (k > 20) + 0.001 * noise.normal()
+        spheres.v = np.stack([rate * rows[:, 1], np.zeros(100)], 1)
+        accumulator.observe(spheres)
+    assert not accumulator.result()["shear rate"].steady
+
+
 def test_a_bed_that_fills_half_of_its_box_is_as_dense_as_its_lattice():
     observable = ShearRheology(margin=2.0)
     case = hard([observable], number=100, size=(10, 20), packing_fraction=None, walls=[Plates("y")])

@@ -234,8 +234,9 @@ def _read(path: Path) -> Iterator[Frame]:
         arrays = load(path, LARGE)
     except Exception:
         raise RunError(f"{path}: damaged: it is not a whole segment of a trajectory") from None
+    entries: dict[str, Any] = dict(arrays)
     for name in [name for name in RAGGED if name in arrays]:
-        ends = np.cumsum(arrays.pop(COUNT.format(name)))
-        arrays[name] = np.split(arrays[name], ends[:-1])
+        ends = np.cumsum(entries.pop(COUNT.format(name)))
+        entries[name] = np.split(arrays[name], ends[:-1])
     for index in range(len(arrays["step"])):
-        yield {name: array[index] for name, array in arrays.items()}
+        yield {name: entry[index] for name, entry in entries.items()}

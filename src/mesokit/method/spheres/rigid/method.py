@@ -7,10 +7,10 @@ from mesokit.method.spheres.rigid.checks import check_rigid
 from mesokit.method.spheres.rigid.engine.engine import RigidEngine
 from mesokit.method.spheres.rigid.expected import RigidCooling, rigid_equilibrium
 from mesokit.method.spheres.rigid.first_overlaps import with_start
+from mesokit.method.spheres.rigid.observe import MeanSquareDisplacement
 from mesokit.method.spheres.rigid.scales import timestep_of
 from mesokit.method.spheres.rigid.section import RigidSections
 from mesokit.method.spheres.rigid.summary import rigid_summary
-from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 
 ENERGIES = ("translation", "rotation", "potential", "contact")
 METHOD = sphere_method(

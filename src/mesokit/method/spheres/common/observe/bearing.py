@@ -80,9 +80,8 @@ class GroupAccumulator(BlockAccumulator):
 
     def add(self, group: NDArray[np.int64], rows: Array) -> None:
         """Take one sample: rows (m, width) of grains or contacts, and the group (m,) of each."""
-        sums = np.zeros((GROUPS, self.width))
-        np.add.at(sums, group % GROUPS, rows)
-        self.blocks.add(sums)
+        sums = [np.bincount(group % GROUPS, column, GROUPS) for column in rows.T]
+        self.blocks.add(np.stack(sums, axis=1))
 
     def contacts_of(self, spheres: TouchingSpheres, walls: bool = True) -> Bearing:
         """The contacts that count."""

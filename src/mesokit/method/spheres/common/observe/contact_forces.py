@@ -1,7 +1,7 @@
 """Distribution of the forces of contacts between grains."""
 
 from collections.abc import Iterator
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -94,8 +94,25 @@ class ContactForcesAccumulator(GroupAccumulator):
             {AXES[of]: 0.5 * (self.edges[1:] + self.edges[:-1])},
             (value, error),
             self.comparisons(),
-            extra={"edges": self.edges.copy(), "of": WORDS[of], "logarithmic": of == "normal"},
+            extra={
+                "edges": self.edges.copy(),
+                "of": WORDS[of],
+                "logarithmic": of == "normal",
+                **self.decay(),
+            },
         )
+
+    def decay(self) -> dict[str, Any]:
+        """An exponential above the mean that has as many forces, and the same mean, as measured."""
+        if self.observable.of == "friction" or not self.blocks.count:
+            return {}
+        count, strong, excess = self.blocks.mean().sum(axis=0)[[COUNT, STRONG, EXCESS]]
+        if not excess > 0:
+            return {}
+        beta, middle = strong / excess, 0.5 * (self.edges[1:] + self.edges[:-1])
+        beyond = np.where(middle > 1, middle - 1, np.nan)
+        beside = strong / count * beta * np.exp(-beta * beyond)
+        return {"beside": beside, "beside_label": f"exponential above the mean, beta = {beta:.2f}"}
 
     def comparisons(self) -> Iterator[Comparison]:
         """Mean force, decay above the mean, weak contacts; or friction that is mobilised."""

@@ -56,12 +56,12 @@ class ContactNetworkAccumulator(GroupAccumulator):
     def observe(self, spheres: TouchingSpheres) -> None:
         found, n = self.contacts_of(spheres), spheres.n
         between, numbers = ~found.at_walls, np.arange(n)
-        number = counted(found.pairs, n)
+        number = contacts_of_each(found.pairs, n)
         kept = bearers(found.pairs, n, self.fewest)
         ends = kept[found.pairs[:, 0]] & (kept[found.pairs[:, 1]] | found.at_walls)
         inside = found.pairs[ends]
         # Each contact counts twice: once for each of two grains, or twice for the one at a wall.
-        halves = counted(inside, n) + np.bincount(inside[inside[:, 1] < 0, 0], minlength=n)
+        halves = contacts_of_each(inside, n) + np.bincount(inside[inside[:, 1] < 0, 0], minlength=n)
         rows = np.zeros((n, self.width))
         rows[:, GRAINS], rows[:, TOUCHING], rows[:, RATTLERS] = 1.0, number, ~kept
         rows[:, BEARERS], rows[:, HALVES] = kept, halves
@@ -128,33 +128,47 @@ class ContactNetworkAccumulator(GroupAccumulator):
         for (a, b), entry in zip(self.pairs, mean.value, strict=True):
             tensor[a, b] = tensor[b, a] = entry
         values, vectors = np.linalg.eigh(tensor)
-        gradients = [self._gradient(v, v) for v in vectors.T]
+        gradients = [derivative(v, v) for v in vectors.T]
         for k in range(self.dimension - 1, -1, -1):
             what = f"fabric eigenvalue {self.dimension - k}"
             yield Comparison(what, *mean.scalar(values[k], gradients[k]))
         split = mean.scalar(values[-1] - values[0], gradients[-1] - gradients[0])
         yield Comparison("fabric anisotropy", *split, note="largest less smallest eigenvalue")
-        first = vectors[:, -1]
+        # An error dF turns the first eigenvector v towards each other one w by w dF v over the
+        # difference of their eigenvalues; without a difference there is no direction.
+        first, others = vectors[:, -1], range(self.dimension - 1)
+        apart, slope = values[-1] - values[-2], gradients[-1] - gradients[-2]
+        turns = {
+            k: derivative(vectors[:, k], first) / ((values[-1] - values[k]) or 1.0) for k in others
+        }
+        alike = "none: isotropic within the error"
         if self.dimension == 2:
             angle = float(np.degrees(np.arctan2(first[1], first[0]))) % 180.0
-            apart, slope = float(values[1] - values[0]), gradients[-1] - gradients[0]
-            turn = self._gradient(vectors[:, 0], first) / (apart or 1.0)
-            known = mean.scalar(angle, np.degrees(turn), over=(apart, slope))
-            note = "" if np.isfinite(known[0]) else "none: the fabric is isotropic within its error"
-            yield Comparison(
-                "direction of most contacts, from x", *known, unit="degrees", note=note
-            )
+            turned = vectors[:, 0] @ [-first[1], first[0]]  # 1 counterclockwise, else -1
+            known = mean.scalar(angle, np.degrees(turned * turns[0]), over=(apart, slope))
+            note = "from x" if np.isfinite(known[0]) else alike
+            yield Comparison("direction of most contacts", *known, unit="degrees", note=note)
             return
-        for axis, part in zip("xyz", first, strict=True):
-            yield Comparison(f"direction of most contacts along {axis}", abs(part), np.nan)
-
-    def _gradient(self, one: Array, other: Array) -> Array:
-        """Derivatives of one F other by the entries of the symmetric tensor F."""
-        parts = [one[a] * other[b] + (one[b] * other[a] if a != b else 0.0) for a, b in self.pairs]
-        return np.array(parts)
+        for a, axis in enumerate("xyz"):
+            change = sum((vectors[a, k] * turns[k] for k in others), np.zeros(len(self.pairs)))
+            known = mean.scalar(abs(first[a]), change, over=(apart, slope))
+            note = "of a unit vector" if np.isfinite(known[0]) else alike
+            yield Comparison(f"direction of most contacts along {axis}", *known, note=note)
 
 
-def counted(pairs: NDArray[np.int64], n: int) -> NDArray[np.int64]:
+def derivative(one: Array, other: Array) -> Array:
+    """Derivatives of one F other by the entries of a symmetric tensor F, those of a row from the
+    diagonal on.
+
+    >>> derivative(np.array([1.0, 2.0]), np.array([3.0, 5.0])).tolist()
+    [3.0, 11.0, 10.0]
+    """
+    entries = itertools.combinations_with_replacement(range(len(one)), 2)
+    parts = [one[a] * other[b] + (one[b] * other[a] if a != b else 0.0) for a, b in entries]
+    return np.array(parts)
+
+
+def contacts_of_each(pairs: NDArray[np.int64], n: int) -> NDArray[np.int64]:
     """Number of contacts (n,) of each grain, with grains and walls."""
     return np.bincount(pairs[pairs >= 0], minlength=n)
 
@@ -169,7 +183,7 @@ def bearers(pairs: NDArray[np.int64], n: int, fewest: int) -> NDArray[np.bool_]:
     kept = np.ones(n, bool)
     while True:
         inside = kept[pairs[:, 0]] & (kept[pairs[:, 1]] | (pairs[:, 1] < 0))
-        left = kept & (counted(pairs[inside], n) >= fewest)
+        left = kept & (contacts_of_each(pairs[inside], n) >= fewest)
         if np.array_equal(left, kept):
             return kept
         kept = left

@@ -85,10 +85,9 @@ class EnergyBudgetAccumulator(Samples):
             return
         for k, name in enumerate(LOSSES, 4):
             yield Comparison(f"energy lost to {name}", end[k], error[k], unit=UNIT)
-        if self.first:
-            known = math.nan if work else 1.0
+        if self.first and not work:
             what = "energy with losses over that at first"
-            yield Comparison(what, self.books / self.first, 0.0, known, "", work)
+            yield Comparison(what, self.books / self.first, 0.0, 1.0)
 
     def work(self) -> str:
         """A note if walls or a bath do work, which no method counts."""
@@ -97,6 +96,7 @@ class EnergyBudgetAccumulator(Samples):
         contacts = [surface.contact for surface in surfaces if surface.contact is not None]
         moves = any(surface.moves for surface in surfaces)
         moves |= any(c.amplitude > 0 or c.temperature is not None for c in contacts)
+        moves |= any(c.speed or c.force or c.pressure for c in contacts)
         if moves or any(surface.rule == "diffuse" for surface in surfaces):
             return "less the work of walls"
         heated = section.energy_source is not None or section.thermostatted

@@ -18,11 +18,12 @@ from mesokit.method.spheres.common.observe.shared.cut_volumes import in_slabs, w
 from mesokit.seam.engine import Array, RunningSpheres
 from mesokit.seam.estimate import Estimate, of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import NOT_STEADY, Comparison, Result, joined
 from mesokit.statistics import Blocks
 
 USUAL_MARGIN = 2.0  # mean diameters
 WIDEST = 0.45  # of the bed: a margin
+DRIFTS = 5.0  # standard errors between both halves of the samples: the flow still changes
 DENSE = 0.3  # inertial number up to which flow is dense
 RATE, SHEAR, PRESSURE, FRACTION, LOW, HIGH = COLUMNS = range(6)
 LAWS = {2: "da Cruz et al., disks of friction 0.4", 3: "Jop et al., glass beads"}
@@ -198,7 +199,9 @@ class ShearRheologyAccumulator(BlockAccumulator):
         unit, one = "m/tau^2" if d == 2 else "m/(a tau^2)", np.eye(len(COLUMNS))
         sign = math.copysign(1.0, rate)
         nominal, note = self.nominal(high - low)
-        yield Comparison("shear rate", *found.scalar(rate, one[RATE]), nominal, "1/tau", note)
+        early = self.early()
+        found_rate = found.scalar(rate, one[RATE])
+        yield Comparison("shear rate", *found_rate, nominal, "1/tau", joined(early, note))
         stress = found.scalar(sign * shear, sign * one[SHEAR])
         yield Comparison("shear stress", *stress, unit=unit)
         yield Comparison("pressure", *found.scalar(pressure, one[PRESSURE]), unit=unit)
@@ -209,7 +212,7 @@ class ShearRheologyAccumulator(BlockAccumulator):
             gradient = sign * ratio * one[RATE] - 0.5 * inertial / pressure * one[PRESSURE]
             yield Comparison("inertial number", *found.scalar(inertial, gradient))
             if 0 < inertial <= DENSE:
-                law = f"approximate: {LAWS[d]}"
+                law = joined(early, f"approximate: {LAWS[d]}")
             known = math.nan
             if law:
                 laws = theory.friction_of_disks, theory.friction_of_spheres
@@ -225,6 +228,16 @@ class ShearRheologyAccumulator(BlockAccumulator):
         if self.plates is not None:
             depth = found.scalar(high - low, one[HIGH] - one[LOW])
             yield Comparison("depth of the bed", *depth, unit="a")
+
+    def early(self) -> str:
+        """A note if the shear rate of both halves of the samples differs by more than chance."""
+        halves = self.blocks.halves()
+        if not halves:
+            return ""
+        first, second = (float(half.mean()[RATE]) for half in halves)
+        error = math.hypot(*(float(half.error()[RATE]) for half in halves))
+        drifts = abs(second - first) > DRIFTS * error
+        return f"{NOT_STEADY}: the flow builds up" if drifts else ""
 
     def nominal(self, depth: float) -> tuple[float, str]:
         """The shear rate that is imposed on a bed so deep, and what it neglects."""

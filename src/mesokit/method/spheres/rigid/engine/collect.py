@@ -6,7 +6,7 @@ from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.kernels.kernel import kernel
 from mesokit.method.spheres.common.contacts.geometry import from_to, from_wall, reach, row
-from mesokit.method.spheres.common.contacts.groups import Solid
+from mesokit.method.spheres.common.contacts.groups import OPENS, Solid
 from mesokit.method.spheres.common.contacts.now import FORCE, GAP, NORMAL, PLACE
 from mesokit.method.spheres.common.contacts.solid import MOST, body_of, touched
 from mesokit.method.spheres.common.walls import entries
@@ -50,6 +50,40 @@ def collect(law, step, time, world, rows):
                 c = fill(rows, c, one, other, scaled(sign, normal), scaled(sign, force), place, gap)
         c = collect_walls(law, step, time, i, world, rows, c)
         c = collect_beside(world.walls.solid, law, step, time, i, world, rows, c)
+
+
+@kernel
+def find_deepest(time, world, found):
+    """Write the smallest gap of all pairs and of grains at walls, below 0 where any overlap."""
+    bodies, lists, walls, least = world.bodies, world.lists, world.walls, 0.0
+    for i in range(len(bodies.number)):
+        r, reached = row(bodies.place, i), reach(bodies, i)
+        for s in range(lists.own[i]):
+            j = lists.near[i, s]
+            separation = from_to(world.box, bodies.place, j, r)
+            least = min(least, dot(separation, separation) ** 0.5 - reached - reach(bodies, j))
+        for w in range(len(walls.rows)):
+            distance, _, _ = from_wall(walls.rows, w, world.box, r, time)
+            if world.plates.drive[w, PER_MASS] > 0.0:
+                distance -= world.plates.state[w, SHIFT]
+            if time < walls.own[w, OPENS]:
+                least = min(least, distance - reached)
+        least = min(least, nearest_beside(walls.solid, time, r, reached))
+    found[0] = least
+
+
+@generic
+def nearest_beside(solid, time, r, reached):
+    """Gap between a grain and the nearest wall of any shape; 0 where they do not overlap."""
+
+
+nearest_beside.register(Nothing)(lambda solid, time, r, reached: 0.0)
+
+
+@nearest_beside.register(Solid)
+def _(solid, time, r, reached):
+    nearest, _, _ = touched(solid, r, time, reached)
+    return min(nearest.distance - reached, 0.0)
 
 
 @scalar

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Sequence
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,17 @@ from mesokit.method.spheres.rigid.engine.system import RigidSystem
 from mesokit.method.spheres.rigid.scales import timestep_of
 from mesokit.method.spheres.rigid.setup import setup_of
 from mesokit.seam.engine import Array, Integers, State
+
+
+class Solved(NamedTuple):
+    """Sweeps in the last step, and since the warm-up; residual: largest change of an impulse in the
+    last sweep over the mean impulse; mean normal force of contacts with one; largest overlap."""
+
+    sweeps: int
+    so_far: int
+    residual: float
+    mean_force: float
+    overlap: float
 
 
 class RigidEngine(SphereEngine):
@@ -91,6 +102,13 @@ class RigidEngine(SphereEngine):
         """Number of spheres and walls with a force on each grain, (n,)."""
         pairs = self.contacts().pairs
         return np.bincount(pairs[pairs >= 0], minlength=self.n)
+
+    @property
+    def solved(self) -> Solved:
+        """How well the forces of the last step are known."""
+        sweeps, ratio, mean, so_far = self.system.last_solved()
+        overlap = self.system.largest_overlap(self.time)
+        return Solved(sweeps, so_far, ratio, mean / self.timestep, overlap)
 
     @property
     def stress(self) -> dict[str, Array]:

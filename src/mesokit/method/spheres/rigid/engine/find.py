@@ -92,6 +92,9 @@ def find_contacts(law, step, time, ahead, mine, world, found, room):
     """
     bodies, lists, box = world.bodies, world.lists, world.box
     count, changed = 0, room.afresh
+    if room.afresh:  # places in memory have changed: none of the pairs written here is known
+        for f in range(room.start, room.start + room.most):
+            found.pair[f, 0] = -1
     # Places and velocities at the start of the step. Impulses of pairs that came apart are
     # forgotten here, those of the others are read when all contacts are in order.
     for i in range(mine[0], mine[1]):

@@ -123,7 +123,7 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
         mine[TOUCHING] = float(touching)
         if law.push_back > 0.0:
             barrier(worker)
-            push_back(worker, law, there, order, total)
+            push_back(worker, law, solver, there, order, total)
         barrier(worker)
         if worker.thread == 0:
             move_plates(motion, world)

@@ -14,7 +14,7 @@ from mesokit.method.spheres.common.contacts.listed import ListedSpheres
 from mesokit.method.spheres.common.contacts.now import COLUMNS
 from mesokit.method.spheres.common.contacts.remembered import pairs_of, remember
 from mesokit.method.spheres.common.contacts.taken import WIDTH, all_taken, in_numbers
-from mesokit.method.spheres.rigid.engine.collect import Rows, collect
+from mesokit.method.spheres.rigid.engine.collect import Rows, collect, find_deepest
 from mesokit.method.spheres.rigid.engine.groups import (
     CONTACT,
     DONE,
@@ -212,10 +212,11 @@ class RigidSystem(ListedSpheres):
         quantum = self.given.law.energy_quantum
         return np.asarray(in_numbers(all_taken(self.taken_sums))[-1] * quantum)
 
-    def last_solved(self) -> tuple[int, float, float]:
+    def last_solved(self) -> tuple[int, float, float, int]:
         """Of the last step: sweeps, largest change of an impulse in the last of them over the mean
-        impulse, and this mean."""
-        return int(self.noted[0, SWEEPS]), float(self.noted[0, RATIO]), float(self.noted[0, MEAN])
+        impulse, and this mean; and sweeps since the warm-up."""
+        sweeps, ratio, mean, so_far = self.noted[0, [SWEEPS, RATIO, MEAN, STEPS]]
+        return int(sweeps), float(ratio), float(mean), int(so_far)
 
     # --- reading ----------------------------------------------------------------------------------
 
@@ -229,6 +230,12 @@ class RigidSystem(ListedSpheres):
         collect(self.given.law, self.given.motion.step, time, world, rows)
         written = rows.pairs[:, 0] >= 0  # a sphere may have left a solid since
         return rows.pairs[written], rows.values[written]
+
+    def largest_overlap(self, time: float) -> float:
+        """The largest overlap of two grains, or of one and a wall."""
+        found = np.zeros(1)
+        find_deepest(time, self.world._replace(box=self.box_at(time)), found)
+        return -float(found[0])
 
     def _sprung(self) -> Array:
         """Impulses of pairs, (contacts, 3)."""
