@@ -13,9 +13,8 @@ from mesokit.geometry.surface import Surface, SurfaceContact
 
 VIBRATION = ("amplitude", "frequency")
 MOTION, PUSHED = ("speed", "travel"), ("force", "pressure", "mass")
-CONTACT = (
-    "temperature", "tangential", "restitution", "friction", *VIBRATION, *MOTION, *PUSHED
-)  # fmt: skip
+OF_COLLISION = ("temperature", "tangential", "restitution", "friction")
+CONTACT = (*OF_COLLISION, *VIBRATION, *MOTION, *PUSHED)
 
 
 class Walls(NamedTuple):

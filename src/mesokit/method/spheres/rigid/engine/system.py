@@ -193,10 +193,8 @@ class RigidSystem(ListedSpheres):
         law, solver, motion, shear, world, found, order = self._packing(
             given.law, given.solver, motion, given.shear, self.world, self.found, self.order_of
         )
-        return (
-            counter, steps, law, solver, motion, shear, world, found, order, self.noted,
-            self.taken_sums,
-        )  # fmt: skip
+        sums = self.noted, self.taken_sums
+        return counter, steps, law, solver, motion, shear, world, found, order, *sums
 
     def forget_sums(self) -> None:
         """Set the momentum taken by surfaces, and the energy lost, to zero."""

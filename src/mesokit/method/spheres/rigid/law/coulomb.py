@@ -1,6 +1,6 @@
 """Friction of Coulomb: surfaces stick with an impulse up to mu times that along the normal."""
 
-from mesokit.method.spheres.rigid.law.frame import shortened
+from mesokit.method.spheres.rigid.law.frame import no_longer
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.vector import added_scaled
 
@@ -20,4 +20,4 @@ def cut(vector, most):
     """A vector cut back to a length."""
     if len(vector) == 1:
         return lambda vector, most: (min(max(vector[0], -most), most),)
-    return lambda vector, most: shortened(vector, most)
+    return lambda vector, most: no_longer(vector, most)

@@ -66,7 +66,7 @@ def _parts_in_space(normal, whole):
 
 
 @scalar
-def shortened(vector, most):
+def no_longer(vector, most):
     """A vector, or one no longer than `most` along it."""
     square = dot(vector, vector)
     if square > most * most:
