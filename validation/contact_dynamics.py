@@ -126,8 +126,15 @@ def statics(page: Page) -> None:
         least = theory.pile_friction(d)
         for grain, floor, stands in ((1.01, 1.01, True), (0.99, 1.01, False), (1.01, 0.99, False)):
             speed = _pile(d, grain * least.grains, floor * least.floor)
-            rows.append([name, f"{grain:.2f} x {least.grains:.5f}", f"{floor:.2f} x "
-                         f"{least.floor:.5f}", f"{speed:.1e}", "stands" if stands else "falls"])
+            rows.append(
+                [
+                    name,
+                    f"{grain:.2f} x {least.grains:.5f}",
+                    f"{floor:.2f} x {least.floor:.5f}",
+                    f"{speed:.1e}",
+                    "stands" if stands else "falls",
+                ]
+            )
             page.check(
                 f"{name}, friction {grain:.2f}, floor {floor:.2f} of the least: speed {speed:.1e}, "
                 f"{'stands' if stands else 'falls'}", (speed < 1e-6) == stands,
@@ -273,7 +280,9 @@ def wave(n: int, sweeps: int, order: str) -> Any:
 
     k = 2 * math.pi / n
     shape = np.cos(k * (np.arange(n) + 0.25))
-    engine = ring(n, GaussSeidel(order, sweeps=sweeps, tolerance=0), np.stack([1e-6 * shape, 0 * shape], 1))
+    engine = ring(
+        n, GaussSeidel(order, sweeps=sweeps, tolerance=0), np.stack([1e-6 * shape, 0 * shape], 1)
+    )
     known = theory.rigid_chain_wave(k, sweeps, 1.0, order)
     found = []
     for _ in range(round(6 * math.pi / float(known.frequency))):
@@ -335,7 +344,9 @@ def sweeps(page: Page, axis: Any) -> None:
     )
     rows = []
     spread = spreading("random", 400)
-    rows.append(Comparison("spread, random", *mean_and_error(spread), theory.sweep_spread("random")))
+    rows.append(
+        Comparison("spread, random", *mean_and_error(spread), theory.sweep_spread("random"))
+    )
     for order in ("ordered", "jacobi"):
         value = spreading(order, 1)[0]
         rows.append(Comparison(f"spread, {order}", value, 1e-6, theory.sweep_spread(order)))
@@ -352,7 +363,10 @@ def sweeps(page: Page, axis: Any) -> None:
         for order in ("random", "coloured"):
             w, g, t, found = wave(n, number, order)
             known = theory.rigid_chain_wave(2 * math.pi / n, number, 1.0, order)
-            for what, value, right in (("frequency", w, known.frequency), ("decay", g, known.decay)):
+            for what, value, right in (
+                ("frequency", w, known.frequency),
+                ("decay", g, known.decay),
+            ):
                 label = f"wave of {n}, {number} sweeps, {order}: {what}"
                 rows.append(Comparison(label, value / float(right), math.nan, 1.0))
                 worst = max(worst, abs(value / float(right) - 1))
@@ -579,10 +593,14 @@ def outflow(page: Page, axis: Any) -> None:
     for c in rows:
         page.check(f"C12, {c.what} {c.measured:.2f} ({c.expected}, within 15 %)",
                    abs(c.percent) < 15)  # fmt: skip
-    page.check(f"C12, rate^(2/3) is linear in D within {100 * bent:.1f} % (at most 3 %)", bent < 0.03)
+    page.check(
+        f"C12, rate^(2/3) is linear in D within {100 * bent:.1f} % (at most 3 %)", bent < 0.03
+    )
     page.check(f"C12, k = {k:.2f} (1 to 2.5)", 1 < k < 2.5)
     apart = max(abs(a - b) / math.hypot(ea, eb) for a, ea, b, eb in halves)
-    page.check(f"C12, both halves of a run: {apart:.1f} s.e. apart at most (below 3.5)", apart < 3.5)
+    page.check(
+        f"C12, both halves of a run: {apart:.1f} s.e. apart at most (below 3.5)", apart < 3.5
+    )
     axis.errorbar(openings, line, 2 / 3 * np.array(errors) / np.array(values) * line, fmt="o",
                   mfc="white", color=BLUE, label="measured")  # fmt: skip
     axis.plot(openings, theory.beverloo_line(np.array(list(OUTFLOW.values())), 2), "x", color=GREEN,
@@ -612,7 +630,6 @@ def collapse(number: int, length: float, seed: int) -> dict[str, float]:
         (wide, high), places, [Plates("x"), Plates("y")], seed=seed, kinds=[MIXED],
         gravity=[0.0, -1.0], contact=contact, timestep=0.005, solver=solver,
     )  # fmt: skip
-    engine.made.diameters[:] = column.diameters()
     engine.advance(round(6 * math.sqrt(2 * top) / 0.005))
     ends = front(engine.positions())
     return {"a": top / length, "run": (ends - length) / length}
@@ -631,7 +648,8 @@ def collapses(page: Page, axis: Any) -> None:
     page.text(
         "Columns of disks, mu = 0.5, beside a wall; length and end of the heap that hangs together. "
         "Theory: contact dynamics of Staron and Hinch (2005); an independent program found "
-        + ", ".join(f"{run} (a = {a})" for a, run in OTHER_RUN_OUT.items()) + "."
+        + ", ".join(f"{run} (a = {a})" for a, run in OTHER_RUN_OUT.items())
+        + "."
     )
     rows = []
     for number, length in ((300, 20.0), (300, 13.0), (500, 12.0), (500, 8.0)):
