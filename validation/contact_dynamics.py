@@ -338,7 +338,8 @@ def sweeps(page: Page, axis: Any) -> None:
     page.text(
         "How far one sweep over a chain of contacts carries a change of force; frequency and decay "
         "of standing waves of a rigid chain with a fixed number of sweeps in a step, by a fit; "
-        "sweeps in random order to 1e-6 of the weight of a column (theory: an independent program); "
+        "sweeps in random order to 1e-6 of the weight of a column (known from an independent "
+        "program); "
         "decay of the slowest error of a chain of 15 contacts; growth of errors where all contacts "
         "of a triangular lattice change at once."
     )
@@ -416,8 +417,12 @@ def sweeps(page: Page, axis: Any) -> None:
 # --- beds ---------------------------------------------------------------------------------------
 
 
-def bed(friction: float, seed: int, number: int = 1500, wide: int = 40, steps: int = 12_000) -> Any:
+GRAINS = {0.0: (600, 25), 0.5: (1500, 40)}  # of a bed, and its width; smooth ones settle slowly
+
+
+def bed(friction: float, seed: int, steps: int = 12_000) -> Any:
     """Grains that have fallen into a bin."""
+    number, wide = GRAINS[friction]
     engine = grains(
         (wide, 66), walls=[Plates("x"), Plates("y")], number=number, kinds=[MIXED], seed=seed,
         gravity=[0.0, -1.0], start=RandomStart(), contact={"friction": friction}, timestep=0.005,
@@ -471,8 +476,8 @@ def beds(page: Page, axis: Any) -> None:
     """Contacts, density, and forces of beds at rest."""
     page.heading("Poured beds (C10, C11)")
     page.text(
-        f"1500 disks of diameters 0.8 to 1.2 fall into a bin 40 wide; {len(SEEDS)} seeds. Contacts "
-        "of a grain count those with walls twice, and leave out grains that rest on nothing. "
+        f"Disks of diameters 0.8 to 1.2 fall into a bin: 1500 with friction into one 40 wide, 600 "
+        f"without into one 25 wide; {len(SEEDS)} seeds. Contacts of a grain count those with walls twice, and leave out grains that rest on nothing. "
         "'Theory' is an independent program; without friction z = 4 (isostatic). The packing "
         "fraction is that off the walls and the surface."
     )
@@ -503,8 +508,8 @@ def beds(page: Page, axis: Any) -> None:
         if friction > 0:
             beyond = sizes[sizes > 1.5] - 1.5
             x = np.array([1.5, 6.0])
-            axis.plot(x, len(beyond) / len(sizes) / beyond.mean() * np.exp(-(x - 1.5) / beyond.mean()),
-                      "k--", lw=1, label="exponential")  # fmt: skip
+            tail = np.exp(-(x - 1.5) / beyond.mean()) * len(beyond) / len(sizes) / beyond.mean()
+            axis.plot(x, tail, "k--", lw=1, label="exponential")  # fmt: skip
             even = float(beyond.std() / beyond.mean())
             rows.append(Comparison("P(f) above 1.5 <f>: spread over mean", even,
                                    even / math.sqrt(len(beyond)), 1.0, "",
@@ -557,14 +562,15 @@ def hourglass(opening: float, seed: int, wide: int = 30, number: int = 1500) -> 
         if times[-1] > 200:
             break
     return {"times": times, "left": left, "dense": dense, "mass": float(mass.sum()),
-            "mean": float(mass.mean()), "area": float((engine.diameters() ** 2).mean())}  # fmt: skip
+            "area": float((engine.diameters() ** 2).mean())}  # fmt: skip
 
 
 def outflow(page: Page, axis: Any) -> None:
     """Rates against openings."""
     page.heading("Outflow (C12)")
     page.text(
-        "1500 disks of diameters 0.8 to 1.2, mu = 0.5, in a bin 30 wide with a hole D in its floor, "
+        "1500 disks of diameters 0.8 to 1.2, mu = 0.5, in a bin 30 wide with a hole D in its "
+        "floor, "
         "while 10 to 50 % of them leave. Rates in squares of the mean diameter (`4 r^2`) over "
         "sqrt(d/g); errors from ten parts of a run. 'Theory' is an independent program, to 10 %."
     )
@@ -646,7 +652,7 @@ def collapses(page: Page, axis: Any) -> None:
     """Run-out against the aspect ratio."""
     page.heading("Columns that collapse (C13)")
     page.text(
-        "Columns of disks, mu = 0.5, beside a wall; length and end of the heap that hangs together. "
+        "Columns of disks, mu = 0.5, beside a wall; end of the heap that hangs together. "
         "Theory: contact dynamics of Staron and Hinch (2005); an independent program found "
         + ", ".join(f"{run} (a = {a})" for a, run in OTHER_RUN_OUT.items())
         + "."
@@ -714,8 +720,8 @@ def shear_cell(page: Page, axis: Any) -> None:
     """Friction and density against the inertial number."""
     page.heading("Dense flow (C14)")
     page.text(
-        "Disks, mu = 0.4, in a sheared box (Lees and Edwards) of constant volume; errors from eight "
-        "parts of a run. Theory: da Cruz et al. (2005), at the inertial number measured."
+        "Disks, mu = 0.4, in a sheared box (Lees and Edwards) of constant volume; errors from "
+        "eight parts of a run. Theory: da Cruz et al. (2005), at the inertial number measured."
     )
     rows = []
     for phi in (0.72, 0.75, 0.77):
@@ -752,7 +758,7 @@ def make() -> int:
     collapses(page, axes[1, 0])
     shear_cell(page, axes[1, 1])
     axes[1, 2].set_axis_off()
-    page.figure(fig, "A standing wave in a chain of 256 rigid grains; forces in beds of 1500 disks; "
+    page.figure(fig, "A standing wave in a chain of 256 rigid grains; forces in beds; "
                 "outflow from a bin; run-out of columns; friction of a sheared box.")  # fmt: skip
     return page.write()
 

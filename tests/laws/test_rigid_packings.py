@@ -81,7 +81,7 @@ def rate(opening, number=500, wide=22, floor=20.0):
 
 
 def test_grains_leave_a_bin_by_the_law_of_beverloo():
-    """Rates^(2/3) are a line, which is 0 at some grain sizes (an independent program: 8.95, 24.7)."""
+    """Rates^(2/3) are a line, which is 0 at some grain sizes (known: 8.95, 24.7)."""
     openings = np.array([6.0, 10.0])
     rates = np.array([rate(opening) for opening in openings])
     assert rates == pytest.approx([8.95, 24.7], rel=0.2)
@@ -95,8 +95,8 @@ def test_a_column_spreads_by_its_height():
     places = column.positions()
     ratio = (np.sort(places[:, 1])[-8:].mean() + 0.5) / length
     heap = rigid(
-        [70, 40], walls=[Plates("x"), Plates("y")], given=at_rest(places), kinds=MIXED, gravity=DOWN,
-        contact={"friction": 0.5}, timestep=0.005, solver=GaussSeidel(sweeps=100),
+        [70, 40], walls=[Plates("x"), Plates("y")], given=at_rest(places), kinds=MIXED,
+        gravity=DOWN, contact={"friction": 0.5}, timestep=0.005, solver=GaussSeidel(sweeps=100),
     )  # fmt: skip
     np.testing.assert_array_equal(heap.diameters(), column.diameters())
     heap.advance(6000)
