@@ -476,8 +476,9 @@ def beds(page: Page, axis: Any) -> None:
     """Contacts, density, and forces of beds at rest."""
     page.heading("Poured beds (C10, C11)")
     page.text(
-        f"Disks of diameters 0.8 to 1.2 fall into a bin: 1500 with friction into one 40 wide, 600 "
-        f"without into one 25 wide; {len(SEEDS)} seeds. Contacts of a grain count those with walls twice, and leave out grains that rest on nothing. "
+        "Disks of diameters 0.8 to 1.2 fall into a bin: 1500 with friction into one 40 wide, 600 "
+        f"without into one 25 wide; {len(SEEDS)} seeds. Contacts of a grain count "
+        "those with walls twice, and leave out grains that rest on nothing. "
         "'Theory' is an independent program; without friction z = 4 (isostatic). The packing "
         "fraction is that off the walls and the surface."
     )
