@@ -41,11 +41,11 @@ TIMESTEP, FRICTION = 0.005, 0.5
 APART = 1.25  # of places before the fall: the largest diameter is 1.2
 SPREAD = 0.2  # of diameters
 SETTLING, SETTLING_SWEEPS = 4000, 60
-WARM, STEPS, FEW_STEPS = 300, 20, 3
+WARM, WARM_SWEEPS, STEPS, FEW_STEPS = 500, 300, 20, 3
 SWEEPS = (100, 200, 400, 800, 1600, 3200, 6400, 12800, 51200)
 ACCURACY = 1e-4  # residual
 NEAR, NEXT = 1 - 2**-10, 1.01  # distances of grains that touch and that do not, in diameters
-NO_END = 1e-300  # residual that no sweep reaches: all are done
+NO_END = 0.0  # residual that no sweep reaches: all are done
 CLOSED = 1e-9  # gap of grains that touch, in diameters
 Array = Any
 
@@ -125,7 +125,7 @@ def at_rest(case: Case, places: Array, threads: int = 1) -> Any:
 def bin_of(bed: Bed, sweeps: int, tolerance: float = NO_END) -> Case:
     """The case of a bed."""
     layers = bed.number / int(bed.width // APART) ** (bed.dimension - 1)
-    height = APART * (math.ceil(layers) + 4)
+    height = APART * (math.ceil(layers) + 12)
     return case(bed.number, bed.dimension, bed.width, height, SPREAD, sweeps, tolerance)
 
 
@@ -150,6 +150,17 @@ def settled(bed: Bed) -> Array:
     return np.load(bed.file)
 
 
+def settled_engine(bed: Bed, sweeps: int, threads: int, tolerance: float = NO_END) -> Any:
+    """The engine of a bed with the forces at rest, found with more sweeps."""
+    places = settled(bed)[:, :-1]
+    first = at_rest(bin_of(bed, WARM_SWEEPS), places, threads)
+    first.advance(WARM)
+    then = at_rest(bin_of(bed, sweeps, tolerance), places, threads)
+    then.restore(first.state())
+    then.advance(STEPS)
+    return then
+
+
 def touching(engine: Any) -> int:
     """How many contacts are closed."""
     return int((engine.contacts().gaps < CLOSED).sum())
@@ -157,8 +168,7 @@ def touching(engine: Any) -> int:
 
 def work(bed: Bed, sweeps: int, threads: int, wall: bool) -> None:
     """Time sweeps, a line for each line that is read."""
-    grains = at_rest(bin_of(bed, sweeps), settled(bed)[:, :-1], threads)
-    grains.advance(WARM)
+    grains = settled_engine(bed, sweeps, threads)
     clock = time.perf_counter if wall else time.process_time
     print("ready", flush=True)
     for _ in sys.stdin:
@@ -239,16 +249,23 @@ def forces(places: Array) -> Array:
 
 
 def siconos(grains: Array, *more: str) -> tuple[Array, float, int] | None:
-    """Forces by Siconos, seconds for a step and contacts; None where it is not installed."""
+    """Forces by Siconos, seconds for a step and contacts; None where it is not installed.
+
+    Disks are spheres in a plane: normals of its contacts of disks are wrong by two degrees.
+    """
     if not (python := os.environ.get("SICONOS")):
         return None
+    flat = grains.shape[1] == 3
+    if flat:
+        grains = np.insert(grains, 1, 0.0, axis=1)
     with tempfile.TemporaryDirectory() as folder:
         given, out = Path(folder) / "grains.npy", Path(folder) / "forces.npy"
         np.save(given, grains)
         command = [python, str(SCRIPTS / "forces_siconos.py"), given, out, str(FRICTION), *more]
         done = subprocess.run(list(map(str, command)), check=True, capture_output=True, text=True)
         took, contacts = done.stdout.splitlines()[-1].split()
-        return np.load(out), float(took), int(contacts)
+        found = np.load(out)
+    return np.delete(found, 3, axis=1) if flat else found, float(took), int(contacts)
 
 
 def table(rounds: int, seconds: float) -> Iterator[str]:
@@ -349,8 +366,7 @@ def _beside_siconos(rounds: int) -> Iterator[str]:
         yield f"| {name} | {len(own)} | {beside} | {floor / exact:.1e} |"
     yield ""
     grains = settled(FEW)
-    own = at_rest(bin_of(FEW, 100_000, ACCURACY), grains[:, :-1])
-    own.advance(WARM)
+    own = settled_engine(FEW, 100_000, 1, ACCURACY)
     mine = []
     for _ in range(rounds):
         began = time.process_time()
