@@ -11,8 +11,8 @@ from mesokit.case.case import Case
 from mesokit.errors import RunError
 from mesokit.method.spheres.common.contacts.now import Contacts, in_order
 from mesokit.method.spheres.common.engine import SphereEngine
-from mesokit.method.spheres.common.walls import surfaces_of
-from mesokit.method.spheres.rigid.engine.groups import SPIN
+from mesokit.method.spheres.common.walls import AXIS, KIND, PLANE, displaced, surfaces_of
+from mesokit.method.spheres.rigid.engine.groups import PER_MASS, SHIFT, SPIN
 from mesokit.method.spheres.rigid.engine.system import RigidSystem
 from mesokit.method.spheres.rigid.scales import timestep_of
 from mesokit.method.spheres.rigid.setup import setup_of
@@ -122,6 +122,26 @@ class RigidEngine(SphereEngine):
             "kinetic": -(self.made.masses[:, None] * v).T @ v / volume,
             "pair": -branch.T @ found.forces[pairs] / volume,
         }
+
+    @property
+    def plate_shifts(self) -> Array:
+        """How far each surface has moved along its normal into the box, (surfaces,)."""
+        number, places = self.surfaces
+        found, rows = np.zeros(number), self.system.given.listed.rows
+        pushed = self.system.given.drive[:, PER_MASS] > 0
+        for w in range(len(rows)):
+            given, _ = displaced(rows, w, self.time)
+            found[places[w]] = self.system.plates[w, SHIFT] if pushed[w] else given
+        return found
+
+    @property
+    def room_between_plates(self) -> Array:
+        """Lengths of the box (d,) less the ways that plates have moved into it."""
+        rows, (_, places) = self.system.given.listed.rows, self.surfaces
+        left, shifts = self.box.copy(), self.plate_shifts
+        for w in np.flatnonzero(rows[:, KIND] == PLANE):
+            left -= shifts[places[w]] * np.abs(rows[w, AXIS : AXIS + self.dimension])
+        return left
 
     @property
     def wall_impulse(self) -> Array:

@@ -13,7 +13,7 @@ from mesokit.loops.layout import share
 from mesokit.loops.neighbours import outdated
 from mesokit.loops.threads import barrier
 from mesokit.method.spheres.common.contacts.geometry import row, shortest
-from mesokit.method.spheres.common.walls import AXIS, KIND, MOVES, PLANE, entries
+from mesokit.method.spheres.common.walls import AXIS, KIND, MOVES, PLANE, displaced, entries
 from mesokit.method.spheres.rigid.engine.find import Room, alongside, find_contacts, spin_at, write
 from mesokit.method.spheres.rigid.engine.finish import bring, finish, fly, kick, push_back
 from mesokit.method.spheres.rigid.engine.groups import (
@@ -71,6 +71,8 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
         box = box_in_step(shear, world.box, time, motion.step)
         there = with_box(world, box)
         # 1. How far grains have moved since lists were made, and how fast they are: t.
+        if worker.thread == 0:
+            set_plates(world)
         mine[FARTHEST], mine[FASTEST] = farthest_and_fastest(there, first_one, last)
         barrier(worker)
         fastest = 0.0
@@ -107,7 +109,7 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
         for i in range(first_one, last):
             kick(motion, world.bodies, world.before, i, flat)
         if worker.thread == 0:
-            push_plates(motion, world)
+            push_plates(motion, time, world)
         barrier(worker)
         total = np.int64(0)
         for t in range(worker.threads):
@@ -166,30 +168,41 @@ def farthest_and_fastest(world, first_one, last):
         for k in range(len(world.flat)):
             speed += bodies.motion[i, k] * bodies.motion[i, k]
         fastest = max(fastest, speed if speed >= 0.0 else np.inf)
-    for w in range(len(world.walls.rows)):
-        fastest = max(fastest, world.plates.state[w, SPEED] * world.plates.state[w, SPEED])
+    if first_one == 0:  # the thread that moves plates
+        for w in range(len(world.walls.rows)):
+            fastest = max(fastest, world.plates.state[w, SPEED] * world.plates.state[w, SPEED])
     return farthest, math.sqrt(fastest)
 
 
 @scalar
-def push_plates(motion, world):
-    """Give plates that are pushed their velocities freely at t + dt, and rows of motion."""
+def set_plates(world):
+    """Write rows of motion of plates that are pushed, with their velocities of t."""
     state, drive, rows = world.plates.state, world.plates.drive, world.walls.rows
     for w in range(len(rows)):
         if drive[w, PER_MASS] > 0.0:
             at, out = world.plates.first + w, first(entries(rows, w, AXIS, ZERO), world.flat)
             moves = first(entries(rows, w, MOVES, ZERO), world.flat)
-            force = drive[w, FORCE] + drive[w, PRESSURE] * area(world, w)
-            later = state[w, SPEED] + motion.step * force * drive[w, PER_MASS]
-            write(world.before, at, 0, added_scaled(moves, state[w, SPEED], out))
-            write(world.motion, at, 0, added_scaled(moves, later, out))
-            for rows_of_motion in (world.motion, world.before):
-                rows_of_motion[at, INVERSE] = drive[w, PER_MASS]
-                write(rows_of_motion, at, spin_at(world.flat), alongside(world.flat))
+            for motion in (world.motion, world.before):
+                write(motion, at, 0, added_scaled(moves, state[w, SPEED], out))
+                motion[at, INVERSE] = drive[w, PER_MASS]
+                write(motion, at, spin_at(world.flat), alongside(world.flat))
 
 
 @scalar
-def area(world, w):
+def push_plates(motion, time, world):
+    """Add a step of their forces to the velocities of plates (v: t, freely to t + dt)."""
+    drive, rows = world.plates.drive, world.walls.rows
+    for w in range(len(rows)):
+        if drive[w, PER_MASS] > 0.0:
+            at, out = world.plates.first + w, first(entries(rows, w, AXIS, ZERO), world.flat)
+            force = drive[w, FORCE] + drive[w, PRESSURE] * area(time, world, w)
+            speed = motion.step * force * drive[w, PER_MASS]
+            now = entries(world.motion, at, 0, world.flat)
+            write(world.motion, at, 0, added_scaled(now, speed, out))
+
+
+@scalar
+def area(time, world, w):
     """Area of a plate, or length in 2D, between the plates across it as they have moved."""
     rows, found, sides = world.walls.rows, 1.0, world.box.size
     for k in range(len(world.flat)):
@@ -197,7 +210,8 @@ def area(world, w):
             length = sides[k]
             for other in range(len(rows)):
                 if rows[other, KIND] == PLANE and rows[other, AXIS + k] != 0.0:
-                    length -= world.plates.state[other, SHIFT]
+                    shift, _ = displaced(rows, other, time)
+                    length -= shift + world.plates.state[other, SHIFT]
             found *= length
     return found
 
