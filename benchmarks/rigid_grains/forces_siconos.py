@@ -5,12 +5,14 @@ Python of the system runs it, with Debian's python3-siconos, -h5py, -scipy, -lxm
     /usr/bin/python3 forces_siconos.py GRAINS FORCES FRICTION [--steps N] [--tolerance X]
         [--width W]
 
-GRAINS is an array file (.npy) with a row for each grain: x, y, radius in 2D, x, y, z, radius in 3D.
-A grain has density 1 over that of one with diameter and mass 1; gravity is 1 along the last axis.
-They stand on a floor at 0, between walls at 0 and W where W is given. The array file FORCES gets a
-row for each contact of the last step: numbers of two grains, the smaller first (-1 is the floor or
-a wall, second), and the force on the first. Printed are seconds of CPU time for a step, without the
-first, and contacts: all in Siconos' index set 1, those that its solver has.
+GRAINS is an array file (.npy) with a row for each sphere: x, y, z, radius. One of diameter 1 has
+mass 1, and gravity is 1. They stand on a floor at z = 0, between walls at 0 and W where W is given.
+The array file FORCES gets a row for each contact of the last step: numbers of two spheres, the
+smaller first (-1 is the floor or a wall, second), and the force on the first. Printed are seconds
+of CPU time for a step, without the first, and contacts: all in Siconos' index set 1, those that its
+solver has.
+
+Its disks are not used: normals of their contacts, from Bullet in 2D, are wrong by two degrees.
 """
 
 import argparse
@@ -28,42 +30,36 @@ from siconos.mechanics.collision.bullet import SiconosBulletOptions
 from siconos.mechanics.collision.tools import Contactor
 
 TIMESTEP, SWEEPS = 0.005, 100_000
-SHAPES = {2: ("Disk", "Box2d", [0.0]), 3: ("Sphere", "Box", [1.0, 0.0, 0.0, 0.0])}
-SOLVERS = {2: numerics.SICONOS_FRICTION_2D_LEMKE, 3: numerics.SICONOS_FRICTION_3D_NSGS}
-KAPPA = {2: 0.5, 3: 0.4}  # moment of inertia over m r^2
-FREE = {2: 3, 3: 6}  # numbers of a velocity
+UPRIGHT = [1.0, 0.0, 0.0, 0.0]
+FIRST_FORCE = 10  # column of the impulse on the first grain of a contact
 NO_MARGIN = {"insideMargin": 0.0, "outsideMargin": 0.0}
 
 
 def scene(runner: MechanicsHdf5Runner, grains: np.ndarray, friction: float, width: float) -> None:
-    """Grains over a floor, and between walls."""
-    d = grains.shape[1] - 1
-    grain, solid, upright = SHAPES[d]
-    reach = np.abs(grains if width else grains[:, : d - 1]).max()
+    """Spheres over a floor, and between walls."""
+    reach = np.abs(grains if width else grains[:, :2]).max()
     extent = 2 * float(reach) + 16  # no wider: Bullet finds contacts in single precision
-    middle = [width / 2] * (d - 1) + [0.0]
-    for axis, side in [(d - 1, 0)] + [(a, s) for a in range(d - 1) for s in (0, 1) if width]:
-        size, place = [extent] * d, list(middle)
+    middle = [width / 2, width / 2, 0.0]
+    for axis, side in [(2, 0)] + [(a, s) for a in (0, 1) for s in (0, 1) if width]:
+        size, place = [extent] * 3, list(middle)
         size[axis], place[axis] = 1.0, side * (width + 1) - 0.5
         name = f"wall{axis}{side}"
-        runner.add_primitive_shape(name, solid, size, **NO_MARGIN)
-        runner.add_object(name, [Contactor(name)], translation=place, orientation=upright)
+        runner.add_primitive_shape(name, "Box", size, **NO_MARGIN)
+        runner.add_object(name, [Contactor(name)], translation=place, orientation=UPRIGHT)
     for number, (*place, radius) in enumerate(grains.tolist()):
-        mass = (2 * radius) ** d
-        inertia = KAPPA[d] * mass * radius**2
-        runner.add_primitive_shape(f"shape{number}", grain, (radius,), **NO_MARGIN)
+        mass = (2 * radius) ** 3
+        runner.add_primitive_shape(f"shape{number}", "Sphere", (radius,), **NO_MARGIN)
         runner.add_object(
             f"grain{number}", [Contactor(f"shape{number}")], translation=place,
-            orientation=upright, velocity=[0.0] * FREE[d], mass=mass,
-            inertia=inertia if d == 2 else [inertia] * 3,
+            orientation=UPRIGHT, velocity=[0.0] * 6, mass=mass,
+            inertia=[0.4 * mass * radius**2] * 3,
         )  # fmt: skip
     runner.add_Newton_impact_friction_nsl("contact", mu=friction, e=0.0)
 
 
 def run(grains: np.ndarray, friction: float, width: float, steps: int, tolerance: float):
     """Contacts of the last step, and seconds of CPU time for each but the first."""
-    d = grains.shape[1] - 1
-    options = kernel.solver_options_create(SOLVERS[d])
+    options = kernel.solver_options_create(numerics.SICONOS_FRICTION_3D_NSGS)
     options.dparam[numerics.SICONOS_DPARAM_TOL] = tolerance
     options.iparam[numerics.SICONOS_IPARAM_MAX_ITER] = SWEEPS
     bullet = SiconosBulletOptions()
@@ -72,7 +68,7 @@ def run(grains: np.ndarray, friction: float, width: float, steps: int, tolerance
 
     def weight(body) -> None:
         force = np.zeros(3)
-        force[d - 1] = -body.scalarMass()
+        force[2] = -body.scalarMass()
         body.setFExtPtr(force)
 
     clocks, last = [], []
@@ -84,7 +80,6 @@ def run(grains: np.ndarray, friction: float, width: float, steps: int, tolerance
     with tempfile.TemporaryDirectory() as folder:
         file = str(Path(folder) / "run.hdf5")
         with MechanicsHdf5Runner(io_filename=file, mode="w") as runner:
-            runner._dimension = runner._out.attrs["dimension"] = d
             scene(runner, grains, friction, width)
         with MechanicsHdf5Runner(io_filename=file, mode="r+") as runner:
             runner.run(
@@ -96,10 +91,10 @@ def run(grains: np.ndarray, friction: float, width: float, steps: int, tolerance
     return last[0], np.diff(clocks)
 
 
-def forces(rows: np.ndarray, d: int) -> np.ndarray:
+def forces(rows: np.ndarray) -> np.ndarray:
     """Numbers of two grains and the force on the first, sorted."""
     pairs = rows[:, -2:].astype(int) - 1
-    found = rows[:, 1 + 3 * d : 1 + 4 * d] / TIMESTEP  # on the first
+    found = rows[:, FIRST_FORCE : FIRST_FORCE + 3] / TIMESTEP
     wall = pairs[:, 0] == pairs[:, 1]  # Siconos gives the grain twice
     turned = pairs[:, 0] > pairs[:, 1]
     found[turned] *= -1
@@ -115,13 +110,13 @@ def main() -> None:
     parser.add_argument("forces")
     parser.add_argument("friction", type=float)
     parser.add_argument("--steps", type=int, default=2)
-    parser.add_argument("--tolerance", type=float, default=1e-12)
+    parser.add_argument("--tolerance", type=float, default=1e-10)
     parser.add_argument("--width", type=float, default=0.0)
     given = parser.parse_args()
     grains = np.load(given.grains)
     with contextlib.redirect_stdout(io.StringIO()):
         rows, took = run(grains, given.friction, given.width, given.steps, given.tolerance)
-    np.save(given.forces, forces(rows, grains.shape[1] - 1))
+    np.save(given.forces, forces(rows))
     print(float(np.median(took)), len(rows))
 
 

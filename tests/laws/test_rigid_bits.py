@@ -27,8 +27,8 @@ def bed(dimension=2, solver="coloured", threads=1, skin=None, **given):
     moving = Surface(velocity=[0.5] + [0.0] * (dimension - 1))
     return rigid(
         size, walls=[Plates("xyz"[dimension - 1], lower=moving)], number=50, kinds=MIXED, kT=0.5,
-        gravity=[0.0] * (dimension - 1) + [-1.0], start=RandomStart(), contact=contact, timestep=0.01,
-        solver=SOLVERS[solver], threads=threads, skin=skin, push_back=0.05, **given,
+        gravity=[0.0] * (dimension - 1) + [-1.0], start=RandomStart(), contact=contact,
+        timestep=0.01, solver=SOLVERS[solver], threads=threads, skin=skin, push_back=0.05, **given,
     )  # fmt: skip
 
 

@@ -53,6 +53,15 @@ def test_energy_is_kinetic_potential_or_lost(dimension, belt):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
+def test_smooth_grains_have_no_friction_however_contacts_turn(dimension):
+    engine = poured(dimension, contact={"friction": 0.0, "restitution": 0.2})
+    engine.advance(700)
+    assert len(impulses(engine)[0]) > 20
+    assert engine.lost["friction"] == 0.0
+    assert not engine.spins().any()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
 def test_momentum_of_a_periodic_box_is_conserved(dimension):
     size = [10.0, 9.0] if dimension == 2 else [6.0, 5.0, 6.0]
     engine = rigid(

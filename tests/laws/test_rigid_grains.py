@@ -39,7 +39,8 @@ def test_each_grain_of_a_column_carries_those_above(order):
     n = 20
     engine = rigid(
         [8, 30], walls=[Plates("y")], given=at_rest([[4.0, 0.5 + i] for i in range(n)]),
-        gravity=[0.0, -G], timestep=0.01, contact={"friction": 0.5}, solver=exact(order, sweeps=100_000),
+        gravity=[0.0, -G], timestep=0.01, contact={"friction": 0.5},
+        solver=exact(order, sweeps=100_000),
     )  # fmt: skip
     engine.advance(50)
     assert pushes(engine) == pytest.approx(G * (n - 1 - np.arange(n - 1)), rel=1e-6)
@@ -160,7 +161,7 @@ def test_two_collide_by_the_law_of_newton(restitution):
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("spins", [(30.0, 15.0), (-20.0, 0.0), (0.4, -0.2), (0.0, 0.1)])
 def test_two_rough_ones_slip_or_stick(dimension, spins):
-    # impulse along the surface: what ends the slip, m_n slip/(1 + 1/kappa), at most mu (1 + e) m_n v
+    # impulse along the surface: what ends the slip, m_n slip/(1 + 1/kappa), at most 2 mu m_n v
     friction, mass, kappa = 0.1, 0.75, KAPPA[dimension]
     kinds = [SphereKind(1.0, mass=1.0), SphereKind(2.0, mass=3.0)]
     places, velocities = [[5.0, 6.0], [6.505, 6.0]], [[0.75, 0.0], [-0.25, 0.0]]

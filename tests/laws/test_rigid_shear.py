@@ -72,7 +72,7 @@ def test_a_collision_across_the_boundary_is_one_with_the_image(dimension):
 
 
 def work_and_stress(engine, steps, every=5):
-    """Stress xy by forces of contacts and by momentum, and what contacts take, per time and area."""
+    """Stress xy of contacts and of momentum; what contacts take, per time and area."""
     area, total, count = float(np.prod(engine.box)), 0.0, 0
     before = sum(engine.lost.values())
     began = engine.time

@@ -1,4 +1,4 @@
-"""Sweeps over the contacts of rigid grains: how far a sweep spreads forces, how fast errors fall."""
+"""Sweeps over contacts of rigid grains: how far one spreads forces, how fast errors fall."""
 
 import math
 

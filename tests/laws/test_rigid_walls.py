@@ -8,8 +8,8 @@ import pytest
 from mesokit import (
     Cuboid,
     Disk,
-    PouredStart,
     Plates,
+    PouredStart,
     RandomStart,
     Rectangle,
     Surface,

@@ -79,6 +79,7 @@ radius = 3
 quantity = "polar-order"
 """,
 }
+FIELDS = {"soft-spheres": '["position", "contact"]'}  # of trajectories; positions unless said
 LONG = ["--set", f"run.steps={STEPS}", "--set", "run.checkpoint_every=100"]
 SOURCE = str(Path(mesokit.__file__).parent.parent)
 
@@ -167,6 +168,8 @@ def test_other_methods_killed(method, tmp_path):
     case_file, checkpoint = tmp_path / "case.toml", tmp_path / "killed" / "checkpoint.npz"
     case_file.write_text(SIBLINGS[method])
     often = ["--set", f"run.method={method}", "--set", "run.checkpoint_every=50"]
+    fields = FIELDS.get(method, '["position"]')
+    often += ["--set", f"trajectory.fields={fields}"]
     start = ["run", case_file, *often, "--set", "trajectory.every=200", "--output"]
     process = mesokit_process(*start, tmp_path / "whole")
     wait_for(tmp_path / "whole" / "checkpoint.npz", process)
@@ -191,9 +194,10 @@ def test_other_methods_killed(method, tmp_path):
     assert 0 < steps[0] < steps[-1] < whole.case.run.steps
     assert killed.results == whole.results
     assert len(killed.trajectory) == len(whole.trajectory) > 1
-    np.testing.assert_array_equal(
-        killed.trajectory[-1]["position"], whole.trajectory[-1]["position"]
-    )
+    last, wanted = killed.trajectory[-1], whole.trajectory[-1]
+    assert set(last) == set(wanted)
+    for name, entry in wanted.items():
+        np.testing.assert_array_equal(last[name], entry)
     for name, array in np.load(tmp_path / "whole" / "checkpoint.npz").items():
         if name.startswith("engine/"):
             np.testing.assert_array_equal(np.load(checkpoint)[name], array)

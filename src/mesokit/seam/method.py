@@ -151,12 +151,14 @@ class Steadiness(NamedTuple):
 
 class Enclosure(NamedTuple):
     """Enclosure of particles, as functions of a case: numbers of the axes that are not periodic,
-    the solids that pictures show (`mesokit.geometry.solids.solids.Solids`) or None, and the plates
-    that are not where they are at rest at a time."""
+    the solids that pictures show (`mesokit.geometry.solids.solids.Solids`) or None, the plates
+    that are not where they are at rest at a time, and those that particles push, with the numbers
+    of their surfaces."""
 
     closed_axes: Callable[[Case], set[int]] = lambda case: set()
     solids: Callable[[Case], Solids | None] = lambda case: None
     moving_plates: Callable[[Case, float], tuple[Plate, ...]] = lambda case, time: ()
+    pushed_plates: Callable[[Case], Sequence[tuple[int, Plate]]] = lambda case: ()
 
 
 NOT_ENCLOSED, STEADY = Enclosure(), Steadiness()

@@ -63,6 +63,13 @@ def solids_of(case: Case) -> Solids:
     return _kept(case.walls, case.box, digests)
 
 
+def solids_left(case: Case, time: float) -> Solids | None:
+    """The solids of a case that are not yet taken away at a time; None where none are left."""
+    left = tuple(wall for wall in case.walls if wall.opens is None or time < wall.opens)
+    digests = tuple(wall.digest for wall in left if isinstance(wall, FromFile))
+    return _kept(left, case.box, digests) if left else None
+
+
 @functools.lru_cache(maxsize=8)
 def _kept(walls: tuple[Wall, ...], box: Box, digests: tuple[str, ...]) -> Solids:
     """Files may change, and walls that name them are then other walls."""

@@ -69,7 +69,7 @@ class Canvas:
             self.figure = ShownFigure(figsize=self.place.size)
             self.axes = [self._add(box) for box in self.place.panels]
             for number, (ax, scale) in enumerate(zip(self.axes, scales, strict=True)):
-                if not _plates(flows[number]):
+                if not self._anew(flows[number]):
                     section.draw(ax, self.view)
                 self._frame(ax, number, flows[0].axes)
                 if scale is not None:
@@ -122,6 +122,10 @@ class Canvas:
         ax.tick_params(labelsize=8, pad=1, length=2)
         ax.text(-0.03, 0.5, scale.label, transform=ax.transAxes, ha="right", va="center", size=9)
 
+    def _anew(self, flow: Flow) -> bool:
+        """Whether solids are drawn anew in each frame, as plates move or solids are taken away."""
+        return flow.spheres is not None and (bool(flow.spheres.plates) or self.section.opens)
+
     def show(self, flows: Sequence[Flow], stamp: str = "") -> None:
         """Draw flows, one for each panel, in place of those before."""
         self.stamp.set_text(stamp)
@@ -132,16 +136,12 @@ class Canvas:
                     artist.remove()
                 limits = ax.get_xlim(), ax.get_ylim()
                 panel.draw(ax, flow, self.region, reach)
-                if _plates(flow):
-                    self.section.draw(ax, self.view, _plates(flow))
+                if flow.spheres is not None and self._anew(flow):
+                    spheres = flow.spheres
+                    self.section.draw(ax, self.view, spheres.plates, spheres.time)
                 if flow.beads is not None:
                     beads.draw(ax, flow.beads, self.region)
                 ax.set(xlim=limits[0], ylim=limits[1])
-
-
-def _plates(flow: Flow) -> tuple[Any, ...]:
-    """Plates that move, and are drawn anew in each frame."""
-    return () if flow.spheres is None else flow.spheres.plates
 
 
 def _ticks(bar: Any, scale: Scale, most: int) -> None:

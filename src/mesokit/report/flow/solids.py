@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from mesokit.case.box import AXES
 from mesokit.case.component import show
 from mesokit.errors import CaseError
+from mesokit.geometry.solids.solids import solids_left
 from mesokit.report.caption import in_cells
 from mesokit.report.flow.data import Array
 from mesokit.report.flow.region import Region
@@ -64,15 +66,26 @@ class Section:
         at = f"; solids at ${axis} = {self.at:g}{in_cells()}$"
         return f"{how} along ${axis}$" + at * bool(self.solids)
 
-    def distance(self, x: Array, y: Array, plates: tuple[Plate, ...] = ()) -> Array:
+    @cached_property
+    def opens(self) -> bool:
+        """Whether a solid is taken away in time."""
+        return self.solids is not None and any(wall.opens is not None for wall in self.case.walls)
+
+    def distance(
+        self, x: Array, y: Array, plates: tuple[Plate, ...] = (), time: float | None = None
+    ) -> Array:
         """Signed distance from the nearest surface at points of the plane, negative in a solid;
-        `plates` are not where they are at rest."""
-        assert self.solids is not None
+        `plates` are not where they are at rest, and some solids may be taken away at a time."""
+        solids = self.solids
+        if time is not None and self.opens:
+            solids = solids_left(self.case, time)
+        if solids is None:
+            return np.full(x.shape, np.inf)
         points = np.zeros((x.size, self.case.box.dimension))
         points[:, self.columns] = np.stack([x.ravel(), y.ravel()], axis=1)
         if self.third is not None:
             points[:, self.third] = self.at
-        found: Array = np.asarray(self.solids.distance(points))
+        found: Array = np.asarray(solids.distance(points))
         for plate in plates:
             found = plate.moved(points, found)
         return found.reshape(x.shape)
@@ -100,8 +113,11 @@ class Section:
                 high[axis] += strip
         return Region((low[0], low[1]), (high[0], high[1]))
 
-    def draw(self, ax: Any, view: Region, plates: tuple[Plate, ...] = ()) -> None:
-        """Fill and outline what is solid in the view; `plates` are not where they are at rest."""
+    def draw(
+        self, ax: Any, view: Region, plates: tuple[Plate, ...] = (), time: float | None = None
+    ) -> None:
+        """Fill and outline what is solid in the view at a time; `plates` are not where they are at
+        rest."""
         if self.solids is None:
             return
         step = max(view.extent) / POINTS
@@ -109,7 +125,7 @@ class Section:
             np.linspace(a, b, max(2, round((b - a) / step) + 1))
             for a, b in zip(view.low, view.high, strict=True)
         )
-        distance = self.distance(*np.meshgrid(x, y), plates)
+        distance = self.distance(*np.meshgrid(x, y), plates, time)
         if not (distance < 0).any():
             return
         filled = ax.contourf(x, y, distance, [-np.inf, 0], colors=[FILL], hatches=[HATCH], zorder=4)

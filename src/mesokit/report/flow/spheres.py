@@ -18,7 +18,7 @@ from mesokit.report.flow.data import Array, Flow, Links, Spheres
 from mesokit.report.flow.region import View
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.state import State
-from mesokit.seam.method import method_of
+from mesokit.seam.method import Plate, method_of
 
 
 def from_the_side(gravity: Sequence[float]) -> tuple[str, str]:
@@ -62,13 +62,30 @@ class SphereSource:
             scale=functools.partial(colouring.scale, self.case) if colouring else None,
             repeats=self._repeats(float(self.time[frame])),
             time=float(self.time[frame]),
-            plates=method_of(self.case).enclosure.moving_plates(self.case, float(self.time[frame])),
+            plates=self._plates(read, float(self.time[frame])),
             remark=colouring.remark(now) if colouring else "",
             links=functools.partial(self._links, read) if "contacts" in self.gives else None,
         )
         if box.dimension == 3:
             spheres = self._deep(spheres, self.towards * position[:, self.third])
         return replace(self.setting.flow(), spheres=spheres)
+
+    def _plates(self, read: Mapping[str, Any], time: float) -> tuple[Plate, ...]:
+        """Plates that are not where they are at rest; those that grains push are where contacts
+        are recorded."""
+        found = method_of(self.case).enclosure.moving_plates(self.case, time)
+        if "contacts" not in self.gives:
+            return tuple(found)
+        records, position = read["contact"], np.asarray(read["position"], float)
+        assert self.reader.diameter is not None
+        radii, pushed = 0.5 * self.reader.diameter, method_of(self.case).enclosure.pushed_plates
+        for surface, plate in pushed(self.case):
+            here = records[records["pair"][:, 1] == -1 - surface]
+            one = here["pair"][:, 0] - (int(self.reader.id[0]) if len(position) else 0)
+            if len(one):
+                away = (position[one] - plate.point) @ plate.normal - radii[one] - here["gap"]
+                found = (*found, plate._replace(shift=float(away.mean())))
+        return tuple(found)
 
     def _links(self, read: Mapping[str, Any]) -> Links:
         """The contacts of a frame, those of spheres that are shown.

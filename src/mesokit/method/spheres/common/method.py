@@ -16,7 +16,7 @@ from mesokit.method.spheres.common.start.first_state import (
     first_state,
     starts,
 )
-from mesokit.method.spheres.common.walls import moving_plates
+from mesokit.method.spheres.common.walls import moving_plates, pushed_plates
 from mesokit.seam.method import Columns, Enclosure, InitialState, Method
 
 
@@ -42,7 +42,7 @@ def sphere_method(
         groups=groups,
         initial=InitialState(first_state, fill, ARRAYS, starts, RUN, prepared),
         engine=make,
-        enclosure=Enclosure(closed_axes, solids, moving_plates),
+        enclosure=Enclosure(closed_axes, solids, moving_plates, pushed_plates),
         **own,
     )
 

@@ -167,6 +167,19 @@ def moving_plates(case: Case, time: float) -> tuple[Plate, ...]:
     )
 
 
+def pushed_plates(case: Case) -> list[tuple[int, Plate]]:
+    """Plates that are pushed into the box, at rest, with the numbers of their surfaces."""
+    which, d = other_walls(case), case.box.dimension
+    rows, (_, surface) = surface_rows(case, which), surfaces_of(case)
+    found = []
+    for w, (_, own) in enumerate(rows.surfaces):
+        contact = own.contact
+        if contact is not None and (contact.force is not None or contact.pressure is not None):
+            point, normal = rows.rows[w, PLACE : PLACE + d], rows.rows[w, AXIS : AXIS + d]
+            found.append((int(surface[w]), Plate(point, normal, 0.0)))
+    return found
+
+
 def room_of(case: Case) -> Room:
     """The box, and which of its axes plates close."""
     shut = closed_axes(case.walls)

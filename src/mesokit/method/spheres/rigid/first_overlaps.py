@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
@@ -55,7 +56,9 @@ def _check_overlaps(case: Case, places: Array, diameters: Array) -> None:
         )
 
 
-def deepest(places: Array, diameters: Array, size: Array, closed: Array) -> tuple[float, str]:
+def deepest(
+    places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]
+) -> tuple[float, str]:
     """The largest overlap of two spheres, or of one with a plate, over the mean of their diameters;
     and which they are. 0 and no words where none overlap.
 

@@ -117,9 +117,8 @@ def find_contacts(look, mine, world, found, room):
             if square < (touch + ahead) * (touch + ahead):
                 f, distance = place_for(room, count), math.sqrt(square)
                 changed |= note(found, room, f, i, j, slot * KINDS + PAIR)
-                if changed:
-                    one, other = bodies.number[i], bodies.number[j]
-                    found.key[f, 0], found.key[f, 1] = min(one, other), max(one, other)
+                one, other = bodies.number[i], bodies.number[j]
+                found.key[f, 0], found.key[f, 1] = min(one, other), max(one, other)
                 normal = first(scaled(1.0 / distance, separation), world.flat)
                 moves = image_speed(box, added_scaled(r, -1.0, row(bodies.place, j)))
                 side = Side(normal, distance - touch, moves, law.friction, law.restitution)

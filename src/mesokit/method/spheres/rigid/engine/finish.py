@@ -175,7 +175,7 @@ def count_losses(law, world, order, c, push, drag, taken):
     """Count the energy that a contact takes: minus its impulse times the mean of the velocities at
     the start and at the end of the step."""
     flat, contact = world.flat, order.contact
-    i, j = pair_of(order, c)
+    i, j = pair_of(order.pair, c)
     normal = entries(contact, c, 0, flat)
     now = relative(world.motion, contact, c, i, j, normal)
     then = relative(world.before, contact, c, i, j, normal)
@@ -214,7 +214,7 @@ def push_some_back(law, world, order, low, high):
     """The same of the contacts from number `low` to before `high`."""
     place, motion, flat, n = world.bodies.place, world.motion, world.flat, len(world.bodies.number)
     for c in range(np.uint64(low), np.uint64(high)):
-        i, j = pair_of(order, c)
+        i, j = pair_of(order.pair, c)
         if order.beside[c, GAP] < 0.0:
             both = motion[i, INVERSE] + motion[j, INVERSE]
             depth = -law.push_back * order.beside[c, GAP] / both

@@ -119,6 +119,20 @@ def relative(motion, contact, c, i, j, normal):
     return less_along_x(velocity, slides), rolled
 
 
+class Coefficients(NamedTuple):
+    """Those of `Law` that an update of a contact uses, out of memory that the loop may write to."""
+
+    stick: float
+    per_turn: float
+    rolling: float
+
+
+@scalar
+def coefficients(law):
+    """The coefficients of all contacts."""
+    return Coefficients(law.stick, law.per_turn, law.rolling)
+
+
 @scalar
 def wanted(law, motion, contact, c, i, j, flat):
     """The normal, and the changes of the impulses along it and along the surface."""
@@ -136,12 +150,14 @@ def wanted(law, motion, contact, c, i, j, flat):
 
 
 @scalar
-def update(law, world, contact, roll, c, i, j):
-    """Update the impulse of a contact; the largest change, and the impulse along the normal."""
-    motion, flat = world.motion, world.flat
-    d = len(flat)
+def update(law, motion, plates, contact, roll, c, both, flat):
+    """Update the impulse of a contact; the largest change, and the impulse along the normal.
+
+    both: places of its two grains.
+    """
+    d, (i, j) = len(flat), both
     normal, push, drag = wanted(law, motion, contact, c, i, j, flat)
-    hit(motion, world.plates.first, i, j, normal, push, drag, law.per_turn)
+    hit(motion, plates, i, j, normal, push, drag, law.per_turn)
     new = contact[c, d + PUSH] + push
     contact[c, d + PUSH] = new
     write(contact, c, d + DRAG, added(entries(contact, c, d + DRAG, drag), drag))
@@ -183,9 +199,9 @@ def twist(motion, i, j, torque, one, other, per_turn, spin):
 
 
 @scalar
-def pair_of(order, c):
+def pair_of(pair, c):
     """Places of the two grains of a contact in memory."""
-    return np.uint64(order.pair[c, 0]), np.uint64(order.pair[c, 1])
+    return np.uint64(pair[c, 0]), np.uint64(pair[c, 1])
 
 
 @scalar
@@ -219,7 +235,7 @@ def give(law, world, order, first, last):
     motion, contact, roll, d = world.motion, order.contact, order.roll, len(world.flat)
     plates = world.plates.first
     for c in range(np.uint64(first), np.uint64(last)):
-        i, j = pair_of(order, c)
+        i, j = pair_of(order.pair, c)
         normal = entries(contact, c, 0, world.flat)
         push = contact[c, d + PUSH] - order.beside[c, PULL]
         hit(
@@ -240,11 +256,12 @@ def give(law, world, order, first, last):
 @scalar
 def sweep_some(law, world, order, first, last, scale, seen):
     """Update the contacts from number `first` to before `last`, one after another."""
-    contact, roll = order.contact, order.roll
+    motion, contact, roll = world.motion, order.contact, order.roll
+    pair, plates, known = order.pair, world.plates.first, coefficients(law)
     change, total, touching, top = seen.change, seen.sum, seen.touching, seen.top
     for c in range(np.uint64(first), np.uint64(last)):
-        i, j = pair_of(order, c)
-        changed, push = update(law, world, contact, roll, c, i, j)
+        both = pair_of(pair, c)
+        changed, push = update(known, motion, plates, contact, roll, c, both, world.flat)
         change, top = max(change, changed), max(top, push)
         total += np.int64(push * scale)
         touching += 1 if push > 0.0 else 0
@@ -254,12 +271,14 @@ def sweep_some(law, world, order, first, last, scale, seen):
 @scalar
 def sweep_shuffled(law, world, order, total, scale, seen):
     """Update all contacts in the order that was drawn."""
-    contact, roll = order.contact, order.roll
+    motion, contact, roll = world.motion, order.contact, order.roll
+    plates = world.plates.first
+    known = coefficients(law)
     change, summed, touching, top = seen.change, seen.sum, seen.touching, seen.top
     for q in range(np.uint64(total)):
         c = np.uint64(order.shuffled[q])
-        i, j = pair_of(order, c)
-        changed, push = update(law, world, contact, roll, c, i, j)
+        both = pair_of(order.pair, c)
+        changed, push = update(known, motion, plates, contact, roll, c, both, world.flat)
         change, top = max(change, changed), max(top, push)
         summed += np.int64(push * scale)
         touching += 1 if push > 0.0 else 0
@@ -300,7 +319,7 @@ def sweep_together(worker, law, solver, world, order, total, scale, seen):
     change, summed, touching, top = seen.change, seen.sum, seen.touching, seen.top
     first, last = share(total, worker.thread, worker.threads)
     for c in range(np.uint64(first), np.uint64(last)):
-        i, j = pair_of(order, c)
+        i, j = pair_of(order.pair, c)
         _, push, drag = wanted(law, motion, contact, c, i, j, world.flat)
         push, drag = solver.relaxation * push, scaled(solver.relaxation, drag)
         new = contact[c, d + PUSH] + push
@@ -317,7 +336,7 @@ def sweep_together(worker, law, solver, world, order, total, scale, seen):
         if first < last:
             first, last = part_of(worker, k, first, last)
             for c in range(np.uint64(first), np.uint64(last)):
-                i, j = pair_of(order, c)
+                i, j = pair_of(order.pair, c)
                 normal = entries(contact, c, 0, world.flat)
                 drag = entries(order.change, c, 1, alongside(normal))
                 hit(motion, plates, i, j, normal, order.change[c, 0], drag, law.per_turn)
@@ -339,7 +358,7 @@ def solve(worker, law, solver, counter, world, order, total, noted):
         mine[LARGEST], mine[TOP] = seen.change, seen.top
         mine[SUM], mine[TOUCHING] = float(seen.sum), float(seen.touching)
         barrier(worker)
-        change, top, parts, touching = 0.0, 0.0, 0.0, 0
+        change, top, parts, touching = 0.0, 0.0, 0.0, np.int64(0)
         for t in range(worker.threads):
             change, top = max(change, noted[t, LARGEST]), max(top, noted[t, TOP])
             parts += noted[t, SUM]

@@ -25,7 +25,7 @@ def _sliding_in_plane(normal, velocity, rolled):
 
 def _sliding_in_space(normal, velocity, rolled):
     at_contact = added_scaled(velocity, -1.0, outer(rolled, normal))
-    return added_scaled(at_contact, -dot(at_contact, normal), normal)
+    return added_scaled(at_contact, -dot(normal, velocity), normal)
 
 
 @by_type
