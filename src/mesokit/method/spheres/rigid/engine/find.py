@@ -73,6 +73,16 @@ class Room(NamedTuple):
     afresh: bool
 
 
+class Look(NamedTuple):
+    """What contacts are looked for with: the law, the time of a step, the time at its start, and
+    the gap up to which two may come together in it."""
+
+    law: Any
+    step: float
+    time: float
+    ahead: float
+
+
 class Side(NamedTuple):
     """Sides of a contact: normal, gap, speed of the image along x, friction and restitution."""
 
@@ -84,13 +94,14 @@ class Side(NamedTuple):
 
 
 @scalar
-def find_contacts(law, step, time, ahead, mine, world, found, room):
+def find_contacts(look, mine, world, found, room):
     """Find the contacts of the grains of a thread; their number, and whether they are others than
     those of the last step.
 
-    mine: first grain and last + 1; ahead: gap up to which two may come together in the step.
+    mine: first grain and last + 1.
     """
     bodies, lists, box = world.bodies, world.lists, world.box
+    law, step, ahead = look.law, look.step, look.ahead
     count, changed = 0, room.afresh
     if room.afresh:  # places in memory have changed: none of the pairs written here is known
         for f in range(room.start, room.start + room.most):
@@ -116,10 +127,8 @@ def find_contacts(law, step, time, ahead, mine, world, found, room):
                 count += 1
             elif remembers(lists.springs, slot):
                 keep(lists.springs, slot, NO_SPRINGS)
-        count, changed = find_at_rows(law, step, time, ahead, i, world, found, room, count, changed)
-        count, changed = find_beside(
-            world.walls.solid, law, step, time, ahead, i, world, found, room, count, changed
-        )
+        count, changed = find_at_rows(look, i, world, found, room, count, changed)
+        count, changed = find_beside(world.walls.solid, look, i, world, found, room, count, changed)
     return count, changed
 
 
@@ -174,9 +183,10 @@ def put_roll(law, world, found, f, reached, inverse):
 
 
 @scalar
-def find_at_rows(law, step, time, ahead, i, world, found, room, count, changed):
+def find_at_rows(look, i, world, found, room, count, changed):
     """Find the contacts of a grain with walls that are rows."""
     bodies, walls, box = world.bodies, world.walls, world.box
+    law, step, time = look.law, look.step, look.time
     r, reached, rows = row(bodies.place, i), reach(bodies, i), walls.rows
     # Walls at the start of the step; one that vibrates has the mean speed of the step.
     for w in range(len(rows)):
@@ -190,7 +200,7 @@ def find_at_rows(law, step, time, ahead, i, world, found, room, count, changed):
             later, _ = displaced(rows, w, time + step)
             moves = added_scaled(moves, (later - shift) / step, out)
         gap, slot = distance - shift - reached, i * len(rows) + w
-        if gap < ahead and time < walls.own[w, OPENS]:
+        if gap < look.ahead and time < walls.own[w, OPENS]:
             f = place_for(room, count)
             at = world.plates.first + w if pushed else len(bodies.number) + f
             if not pushed:
@@ -223,19 +233,19 @@ def still(world, at, moves):
 
 
 @generic
-def find_beside(solid, law, step, time, ahead, i, world, found, room, count, changed):
+def find_beside(solid, look, i, world, found, room, count, changed):
     """Find the contacts of a grain with walls of any shape."""
 
 
 find_beside.register(Nothing)(
-    lambda solid, law, step, time, ahead, i, world, found, room, count, changed: (count, changed)
+    lambda solid, look, i, world, found, room, count, changed: (count, changed)
 )
 
 
 @find_beside.register(Solid)
-def _(solid, law, step, time, ahead, i, world, found, room, count, changed):
+def _(solid, look, i, world, found, room, count, changed):
     r, reached, rows = row(world.bodies.place, i), reach(world.bodies, i), len(world.walls.rows)
-    places = touched(solid, r, time, reached + ahead)
+    places = touched(solid, r, look.time, reached + look.ahead)
     # A contact that ends frees the memory of its impulse first.
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
@@ -248,7 +258,7 @@ def _(solid, law, step, time, ahead, i, world, found, room, count, changed):
             own, normal = solid.own, first(place.normal, world.flat)
             gap = place.distance - reached
             side = Side(normal, gap, 0.0, own[body, FRICTION], own[body, RESTITUTION])
-            put(law, step, world, found, f, side)
-            put_roll(law, world, found, f, reached, 0.0)
+            put(look.law, look.step, world, found, f, side)
+            put_roll(look.law, world, found, f, reached, 0.0)
             count += 1
     return count, changed

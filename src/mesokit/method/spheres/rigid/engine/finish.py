@@ -148,7 +148,6 @@ def finish(worker, law, step, world, order, total, taken):
     d, flat, contact = len(world.flat), world.flat, order.contact
     first_contact, last = share(total, worker.thread, worker.threads)
     for c in range(np.uint64(first_contact), np.uint64(last)):
-        i, j = pair_of(order.pair, c)
         normal = entries(contact, c, 0, flat)
         push, drag = contact[c, d + PUSH], entries(contact, c, d + DRAG, alongside(flat))
         rolling = (0.0, 0.0, 0.0)
@@ -156,7 +155,7 @@ def finish(worker, law, step, world, order, total, taken):
             rolling = twisted(normal, entries(order.roll, c, TORQUE, alongside(flat)))
         keep_at(world, order.slot[c], Springs(in_space(impulse(normal, push, drag)), rolling))
         pushed = push - order.beside[c, PULL]
-        count_losses(law, world, order, c, i, j, normal, pushed, drag, taken)
+        count_losses(law, world, order, c, pushed, drag, taken)
         kind = order.slot[c] % KINDS
         if kind != PAIR:
             rows, s = len(world.walls.rows), order.slot[c] // KINDS
@@ -172,10 +171,12 @@ def counted(vector, scale):
 
 
 @scalar
-def count_losses(law, world, order, c, i, j, normal, push, drag, taken):
+def count_losses(law, world, order, c, push, drag, taken):
     """Count the energy that a contact takes: minus its impulse times the mean of the velocities at
     the start and at the end of the step."""
     flat, contact = world.flat, order.contact
+    i, j = pair_of(order.pair, c)
+    normal = entries(contact, c, 0, flat)
     now = relative(world.motion, contact, c, i, j, normal)
     then = relative(world.before, contact, c, i, j, normal)
     velocity, rolled = scaled(0.5, added(now[0], then[0])), scaled(0.5, added(now[1], then[1]))

@@ -132,3 +132,20 @@ class World(NamedTuple):
     before: Any
     plates: Plates
     flat: Any
+
+
+class Rules(NamedTuple):
+    """What does not change in a run: the law of contacts, the solver, motion, shear of the box."""
+
+    law: Law
+    solver: Any
+    motion: Motion
+    shear: Any
+
+
+class Sums(NamedTuple):
+    """noted (threads, 16): numbers of a thread, see the columns above; taken (threads, surfaces +
+    1, width): momentum that surfaces have taken, and in the last row energy lost, in quanta."""
+
+    noted: Any
+    taken: Any

@@ -14,7 +14,14 @@ from mesokit.loops.neighbours import outdated
 from mesokit.loops.threads import barrier
 from mesokit.method.spheres.common.contacts.geometry import row, shortest
 from mesokit.method.spheres.common.walls import AXIS, KIND, MOVES, PLANE, displaced, entries
-from mesokit.method.spheres.rigid.engine.find import Room, alongside, find_contacts, spin_at, write
+from mesokit.method.spheres.rigid.engine.find import (
+    Look,
+    Room,
+    alongside,
+    find_contacts,
+    spin_at,
+    write,
+)
 from mesokit.method.spheres.rigid.engine.finish import bring, finish, fly, kick, push_back
 from mesokit.method.spheres.rigid.engine.groups import (
     CHANGED,
@@ -51,12 +58,14 @@ ZERO = (0.0, 0.0, 0.0)
 
 
 @kernel
-def advance(worker, counter, steps, law, solver, motion, shear, world, found, order, noted, taken):
+def advance(worker, counter, steps, rules, world, found, order, sums):
     """Do `steps` steps, or fewer where lists must be made anew or contacts have no room.
 
-    `noted` (threads, 16) holds afterwards the number of steps done, and why there are no more; and
-    of the last of them the number of sweeps and the largest change of an impulse over the mean.
+    `sums.noted` holds afterwards the number of steps done, and why there are no more; and of the
+    last of them the number of sweeps and the largest change of an impulse over the mean.
     """
+    law, solver, motion, shear = rules.law, rules.solver, rules.motion, rules.shear
+    noted, taken = sums.noted, sums.taken
     n, flat = len(world.bodies.number), world.flat
     first_one, last = share(n, worker.thread, worker.threads)
     mine, most = noted[worker.thread], len(found.slot) // worker.threads
@@ -89,9 +98,8 @@ def advance(worker, counter, steps, law, solver, motion, shear, world, found, or
             break
         # 2. Contacts that may close within the step, at the places and velocities of t.
         room = Room(worker.thread * most, most, afresh)
-        count, changed = find_contacts(
-            law, motion.step, time, ahead, (first_one, last), there, found, room
-        )
+        look = Look(law, motion.step, time, ahead)
+        count, changed = find_contacts(look, (first_one, last), there, found, room)
         changed |= float(count) != mine[COUNT]
         mine[COUNT], mine[CHANGED] = float(count), 1.0 if changed else 0.0
         barrier(worker)

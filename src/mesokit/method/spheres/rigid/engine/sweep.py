@@ -43,6 +43,13 @@ from mesokit.scalar.vector import added, added_scaled, dot, scaled
 FINE = 2.0**28  # parts of the largest impulse in which impulses are added up, without an order
 
 
+class Draw(NamedTuple):
+    """Where the random order of a sweep is drawn: counter of the step, and number of the sweep."""
+
+    counter: Any
+    sweep: int
+
+
 class Seen(NamedTuple):
     """What a sweep has seen: largest change of an impulse, sum of impulses in parts, number of
     contacts with one, and the largest."""
@@ -143,9 +150,12 @@ def wanted(law, motion, contact, c, i, j, flat):
 
 
 @scalar
-def update(law, motion, plates, contact, roll, c, i, j, flat):
-    """Update the impulse of a contact; the largest change, and the impulse along the normal."""
-    d = len(flat)
+def update(law, motion, plates, contact, roll, c, both, flat):
+    """Update the impulse of a contact; the largest change, and the impulse along the normal.
+
+    both: places of its two grains.
+    """
+    d, (i, j) = len(flat), both
     normal, push, drag = wanted(law, motion, contact, c, i, j, flat)
     hit(motion, plates, i, j, normal, push, drag, law.per_turn)
     new = contact[c, d + PUSH] + push
@@ -250,8 +260,8 @@ def sweep_some(law, world, order, first, last, scale, seen):
     pair, plates, known = order.pair, world.plates.first, coefficients(law)
     change, total, touching, top = seen.change, seen.sum, seen.touching, seen.top
     for c in range(np.uint64(first), np.uint64(last)):
-        i, j = pair_of(pair, c)
-        changed, push = update(known, motion, plates, contact, roll, c, i, j, world.flat)
+        both = pair_of(pair, c)
+        changed, push = update(known, motion, plates, contact, roll, c, both, world.flat)
         change, top = max(change, changed), max(top, push)
         total += np.int64(push * scale)
         touching += 1 if push > 0.0 else 0
@@ -267,8 +277,8 @@ def sweep_shuffled(law, world, order, total, scale, seen):
     change, summed, touching, top = seen.change, seen.sum, seen.touching, seen.top
     for q in range(np.uint64(total)):
         c = np.uint64(order.shuffled[q])
-        i, j = pair_of(order.pair, c)
-        changed, push = update(known, motion, plates, contact, roll, c, i, j, world.flat)
+        both = pair_of(order.pair, c)
+        changed, push = update(known, motion, plates, contact, roll, c, both, world.flat)
         change, top = max(change, changed), max(top, push)
         summed += np.int64(push * scale)
         touching += 1 if push > 0.0 else 0
@@ -276,7 +286,7 @@ def sweep_shuffled(law, world, order, total, scale, seen):
 
 
 @scalar
-def sweep(worker, law, solver, counter, number, world, order, total, scale):
+def sweep(worker, law, solver, draw, world, order, total, scale):
     """One sweep of all threads; what this thread has seen."""
     seen = Seen(0.0, np.int64(0), 0, 0.0)
     if solver.order == COLOURED:
@@ -292,7 +302,7 @@ def sweep(worker, law, solver, counter, number, world, order, total, scale):
     else:
         if worker.thread == 0:
             if solver.order == RANDOM:
-                shuffle(counter, number, total, order.shuffled)
+                shuffle(draw.counter, draw.sweep, total, order.shuffled)
                 seen = sweep_shuffled(law, world, order, total, scale, seen)
             else:
                 seen = sweep_some(law, world, order, 0, total, scale, seen)
@@ -344,7 +354,7 @@ def solve(worker, law, solver, counter, world, order, total, noted):
     # Sums of impulses are whole parts of the largest one of the sweep before, so that they have no
     # order. All threads see the same numbers, and end together.
     while done < solver.sweeps and total > 0:
-        seen = sweep(worker, law, solver, counter, done, world, order, total, scale)
+        seen = sweep(worker, law, solver, Draw(counter, done), world, order, total, scale)
         mine[LARGEST], mine[TOP] = seen.change, seen.top
         mine[SUM], mine[TOUCHING] = float(seen.sum), float(seen.touching)
         barrier(worker)

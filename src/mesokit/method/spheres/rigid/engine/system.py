@@ -36,6 +36,8 @@ from mesokit.method.spheres.rigid.engine.groups import (
     Found,
     Order,
     Plates,
+    Rules,
+    Sums,
     World,
 )
 from mesokit.method.spheres.rigid.engine.sliding import AtRest
@@ -190,11 +192,10 @@ class RigidSystem(ListedSpheres):
     def _arguments(self, step: int, steps: int) -> tuple[Any, ...]:
         given, counter = self.given, Counter(np.uint64(self.given.seed), np.uint64(step))
         motion = given.motion._replace(made=self.made_at)
-        law, solver, motion, shear, world, found, order = self._packing(
-            given.law, given.solver, motion, given.shear, self.world, self.found, self.order_of
-        )
-        sums = self.noted, self.taken_sums
-        return counter, steps, law, solver, motion, shear, world, found, order, *sums
+        rules = Rules(given.law, given.solver, motion, given.shear)
+        sums = Sums(self.noted, self.taken_sums)
+        memory = rules, self.world, self.found, self.order_of, sums
+        return counter, steps, *self._packing(*memory)
 
     def forget_sums(self) -> None:
         """Set the momentum taken by surfaces, and the energy lost, to zero."""
