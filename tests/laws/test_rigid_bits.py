@@ -13,17 +13,17 @@ ALL = {
     "friction": 0.5, "restitution": 0.2, "rolling": 0.1, "cohesion": {"force": 0.4, "range": 0.02},
 }  # fmt: skip
 SOLVERS = {
-    "coloured": GaussSeidel(sweeps=15),
-    "random": GaussSeidel("random", sweeps=15),
-    "ordered": GaussSeidel("ordered", sweeps=15),
-    "jacobi": Jacobi(relaxation=0.4, sweeps=15),
+    "coloured": GaussSeidel(sweeps=4),
+    "random": GaussSeidel("random", sweeps=4),
+    "ordered": GaussSeidel("ordered", sweeps=4),
+    "jacobi": Jacobi(relaxation=0.4, sweeps=4),
 }
 
 
 def bed(dimension=2, solver="coloured", threads=1, skin=None, **given):
     """Grains that fall on a floor that moves along itself."""
     contact = ALL | ({"rolling": 0.0} if solver == "jacobi" else {})
-    size = [10.0, 12.0] if dimension == 2 else [6.0, 6.0, 8.0]
+    size = [10.0, 8.0] if dimension == 2 else [5.0, 5.0, 5.0]
     moving = Surface(velocity=[0.5] + [0.0] * (dimension - 1))
     return rigid(
         size, walls=[Plates("xyz"[dimension - 1], lower=moving)], number=50, kinds=MIXED, kT=0.5,
@@ -35,7 +35,7 @@ def bed(dimension=2, solver="coloured", threads=1, skin=None, **given):
 def among_solids(threads=1, skin=None, **_):
     """Grains that fall on a block."""
     return rigid(
-        [12, 14], walls=[Plates("y"), Rectangle(centre=[6, 2], size=[7, 3], angle=20)], number=50,
+        [12, 10], walls=[Plates("y"), Rectangle(centre=[6, 2], size=[7, 3], angle=20)], number=50,
         kinds=MIXED, kT=0.5, gravity=[0.0, -1.0], start=RandomStart(), contact=ALL, timestep=0.01,
         solver=SOLVERS["coloured"], threads=threads, skin=skin,
     )  # fmt: skip
@@ -57,32 +57,30 @@ SYSTEMS = {
 
 @pytest.mark.parametrize("solver", list(SOLVERS))
 def test_threads_change_no_bit_with_any_solver(solver):
-    one, two, three = (bed(2, solver, threads) for threads in (1, 2, 3))
-    for engine in (one, two, three):
-        engine.advance(500)
-    assert same(one, two)
+    one, three = (bed(2, solver, threads) for threads in (1, 3))
+    for engine in (one, three):
+        engine.advance(150)
     assert same(one, three)
-    assert len(one.state()["pairs"]) > 20
+    assert len(one.state()["pairs"]) > 10
 
 
 @pytest.mark.parametrize("system", ["3D", "solids", "sheared"])
 def test_threads_change_no_bit(system):
-    one, two, three = (SYSTEMS[system](threads=threads) for threads in (1, 2, 3))
-    for engine in (one, two, three):
-        engine.advance(500)
+    one, two = (SYSTEMS[system](threads=threads) for threads in (1, 2))
+    for engine in (one, two):
+        engine.advance(150)
     assert same(one, two)
-    assert same(one, three)
-    assert len(one.state()["pairs"]) > 20
+    assert len(one.state()["pairs"]) > 10
 
 
 @pytest.mark.parametrize("system", list(SYSTEMS))
 def test_a_run_goes_on_from_any_step_to_the_same_bits(system):
-    whole, parts, states = SYSTEMS[system](), [137, 1, 100, 162, 80, 20], []
+    whole, parts, states = SYSTEMS[system](), [57, 1, 60, 32], []
     for steps in parts:
         states.append(whole.state())
         whole.advance(steps)
     for k, state in enumerate(states):
-        again = SYSTEMS[system](threads=2)
+        again = SYSTEMS[system](threads=1 + k % 2)
         again.restore({name: array.copy() for name, array in state.items()})
         again.advance(sum(parts[k:]))
         assert same(again, whole)
@@ -93,10 +91,10 @@ def test_a_run_goes_on_from_any_step_to_the_same_bits(system):
 @pytest.mark.parametrize("system", list(SYSTEMS))
 def test_how_far_lists_go_changes_no_bit(system):
     usual = SYSTEMS[system]()
-    usual.advance(500)
+    usual.advance(150)
     for skin in (0.13, 0.5):
         other = SYSTEMS[system](skin=skin)
-        other.advance(500)
+        other.advance(150)
         assert same(usual, other)
 
 
@@ -104,7 +102,7 @@ def test_a_random_order_is_one_of_the_seed():
     one, same_seed, another = (bed(2, "random", seed=seed) for seed in (1, 1, 2))
     another.restore(one.state())
     for engine in (one, same_seed, another):
-        engine.advance(200)
+        engine.advance(100)
     assert same(one, same_seed)
     assert not same(one, another)
 
@@ -112,7 +110,7 @@ def test_a_random_order_is_one_of_the_seed():
 def test_the_end_of_a_warm_up_changes_no_motion():
     one, two = bed(), bed()
     for engine in (one, two):
-        engine.advance(200)
+        engine.advance(100)
     two.end_warmup()
     assert not two.wall_impulse.any()
     assert not any(two.lost.values())
