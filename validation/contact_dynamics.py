@@ -317,7 +317,7 @@ def triangular(relaxation: float, sweeps: int, side: int = 8) -> float:
     places = np.stack([columns + 0.5 * (rows % 2) + 0.3, (rows + 0.3) * height], 1) * (1 - DEEP)
     engine = grains(
         np.array([side, side * height]) * (1 - DEEP), places, contact={"friction": 0.0},
-        timestep=1e-3, solver=Jacobi(relaxation=relaxation, sweeps=sweeps, tolerance=0),
+        kinds=[SphereKind(1.0, mass=1.0, spread=1e-12)], timestep=1e-3, solver=Jacobi(relaxation=relaxation, sweeps=sweeps, tolerance=0),
     )  # fmt: skip
     up, right, me = ((rows + 1) % side) * side, (columns + rows % 2) % side, np.arange(side**2)
     beside = (rows * side + (columns + 1) % side, up + right, up + (right - 1) % side)
