@@ -11,6 +11,7 @@ from mesokit import (
     EquationOfState,
     HardCollision,
     Kicks,
+    Plates,
     RandomStart,
     RunError,
     SphereKind,
@@ -136,6 +137,13 @@ def test_a_step_of_more_events_than_are_done_at_once():
 def test_growing_spheres_that_jam_are_no_start(size, fraction):
     with pytest.raises(CaseError, match=r"jam before they fill 0\.[789]"):
         gas(size, packing_fraction=fraction, start=RandomStart())
+
+
+def test_growing_spheres_that_collide_without_end_begin_anew():
+    # with these velocities rounding keeps two of them in touch (seed 1)
+    walls, kinds = [Plates("x"), Plates("y")], [SphereKind(1.0, spread=0.2)]
+    start = gas([40, 60], walls=walls, number=1500, kinds=kinds, start=RandomStart())
+    assert smallest_gap(start.engine) > -1e-9
 
 
 @pytest.mark.parametrize(

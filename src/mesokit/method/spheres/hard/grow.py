@@ -5,6 +5,7 @@ Random sequential addition, then the algorithm of Lubachevsky and Stillinger (19
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from mesokit.method.spheres.hard.collision.hard import Constant
 from mesokit.method.spheres.hard.engine.collide import Rules
 from mesokit.method.spheres.hard.engine.groups import VELOCITY, HardWorld
 from mesokit.method.spheres.hard.engine.motion import put_entries
-from mesokit.method.spheres.hard.engine.system import HardSetup, HardSystem
+from mesokit.method.spheres.hard.engine.system import Collapse, HardSetup, HardSystem
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import METHOD, Counter, unit, words
@@ -30,6 +31,7 @@ DILUTE = {2: 0.20, 3: 0.10}  # packing fraction of the spheres that begin to gro
 SPEED = 0.05  # of growth of a mean diameter, in thermal velocities
 IN_WINDOW = 0.05  # relative growth
 INSTANT = 1e-12  # of a window
+ATTEMPTS = 4  # with other velocities
 JAMMED = 1e5  # events of each in the time in which it flies a diameter
 
 
@@ -46,37 +48,55 @@ def grown(
     Small spheres are placed at random and grow while they fly and collide. Raises CaseError where
     there is no room for them.
     """
-    d, n = len(size), len(diameters)
+    d = len(size)
     small = min(1.0, (DILUTE[d] / fraction) ** (1 / d))
     places = scattered(size, closed, small * diameters, walls, seed)
     if small == 1.0:
         return places
+    # Rounding may make two that grow in touch collide without end; other velocities part them.
+    for attempt in range(ATTEMPTS):
+        random = np.random.default_rng(seed if attempt == 0 else [seed, attempt])
+        try:
+            return _grow(size, closed, diameters, walls, small, places, seed, random)
+        except Collapse:
+            pass
+        except RunError:
+            break
+    raise CaseError(f"spheres: they jam before they fill {fraction:.3g} of the box; expected fewer")
+
+
+def _grow(
+    size: Sequence[float],
+    closed: Sequence[bool],
+    diameters: Array,
+    walls: Array,
+    small: float,
+    places: Array,
+    seed: int,
+    random: np.random.Generator,
+) -> Array:
+    """Places of spheres that have grown from `small` diameters, and collided. Raises RunError."""
+    n, d = places.shape
     growth = SPEED / (small * float(diameters.mean()))
     window, ones = IN_WINDOW / growth, np.ones(n)
     smooth = np.tile([1.0, -1.0, 0.0, 0.0], (len(walls), 1))
     rules = Rules(Constant(1.0), -1.0, 0.0, smooth, np.uint64(seed))
     most = JAMMED / float(diameters.mean())
     bodies = small * diameters, ones, ones
-    times = {"lasting": 0.0, "window": window, "instant": INSTANT * window}
+    times: dict[str, Any] = {"lasting": 0.0, "window": window, "instant": INSTANT * window}
     setup = HardSetup(size, closed, (), *bodies, walls, rules, **times, growth=growth, most=most)
-    system = HardSystem(setup)
-    v = np.random.default_rng(seed).normal(size=(n, d))
+    system, v = HardSystem(setup), random.normal(size=(n, d))
     system.fill(places, v / math.sqrt((v * v).mean()), np.zeros((n, 1 if d == 2 else 3)))
     until = (1 / small - 1) / growth
     windows = math.floor(until / window)
     # Diameters grow at a constant rate while spheres collide, window after window. Collisions of
     # growing spheres add energy, so velocities are scaled back after each window.
-    try:
-        for k in range(windows):
-            system.run_to(k + 1, 0.0)
-            v = system.spheres.state[:, VELOCITY : VELOCITY + d]
-            v /= math.sqrt((v * v).mean())
-            system.prepare()
-        system.run_to(windows, until - windows * window)
-    except RunError:
-        raise CaseError(
-            f"spheres: they jam before they fill {fraction:.3g} of the box; expected fewer"
-        ) from None
+    for k in range(windows):
+        system.run_to(k + 1, 0.0)
+        v = system.spheres.state[:, VELOCITY : VELOCITY + d]
+        v /= math.sqrt((v * v).mean())
+        system.prepare()
+    system.run_to(windows, until - windows * window)
     return system.read()[0]
 
 

@@ -55,6 +55,10 @@ class HardSetup(NamedTuple):
     most: float = math.inf
 
 
+class Collapse(RunError):
+    """Spheres that collide without end."""
+
+
 class HardSystem:
     """Hard spheres in a box, their neighbour lists and the queue of their events."""
 
@@ -221,7 +225,7 @@ class HardSystem:
         while (ended := run.run_events(*self._arguments(end))) != run.DONE:
             first = int(self.queue.heap[0])
             if ended in (run.COLLAPSED, run.FAILED):
-                raise RunError(self._failure(ended, first))
+                raise Collapse(self._failure(ended, first))
             if ended == run.PAUSED:
                 now = float(self.spheres.state[:, groups.TIME].max())
                 if self.given.most * self.n * (now - began) < run.AT_ONCE:
