@@ -28,6 +28,7 @@ from mesokit.method.spheres.rigid.law.contact import RigidContact
 from mesokit.method.spheres.rigid.section import RigidSpheres
 from mesokit.method.spheres.rigid.solver.gauss_seidel import GaussSeidel
 from mesokit.method.spheres.rigid.solver.jacobi import Jacobi
+from mesokit.report.style import sparse_logarithm
 
 NAME = "contact_dynamics"
 UNIT, MIXED = SphereKind(1.0, mass=1.0), SphereKind(1.0, spread=0.2)
@@ -317,7 +318,8 @@ def triangular(relaxation: float, sweeps: int, side: int = 8) -> float:
     places = np.stack([columns + 0.5 * (rows % 2) + 0.3, (rows + 0.3) * height], 1) * (1 - DEEP)
     engine = grains(
         np.array([side, side * height]) * (1 - DEEP), places, contact={"friction": 0.0},
-        kinds=[SphereKind(1.0, mass=1.0, spread=1e-12)], timestep=1e-3, solver=Jacobi(relaxation=relaxation, sweeps=sweeps, tolerance=0),
+        kinds=[SphereKind(1.0, mass=1.0, spread=1e-12)], timestep=1e-3,  # not refused as too dense
+        solver=Jacobi(relaxation=relaxation, sweeps=sweeps, tolerance=0),
     )  # fmt: skip
     up, right, me = ((rows + 1) % side) * side, (columns + rows % 2) % side, np.arange(side**2)
     beside = (rows * side + (columns + 1) % side, up + right, up + (right - 1) % side)
@@ -372,7 +374,8 @@ def sweeps(page: Page, axis: Any) -> None:
                 rows.append(Comparison(label, value / float(right), math.nan, 1.0))
                 worst = max(worst, abs(value / float(right) - 1))
             if (n, order) == (256, "random"):
-                axis.plot(t, found, color=BLUE, label="20 sweeps a step")
+                few = slice(None, None, 4)
+                axis.plot(t[few], found[few], "o", mfc="white", ms=4, color=BLUE, label="measured")
                 law = np.exp(-known.decay * t) * np.cos(known.frequency * t)
                 axis.plot(t, law, "k--", lw=1, label="theory")
     page.check(f"standing waves: within {100 * worst:.2f} % of theory (at most 3 %)", worst < 0.03)
@@ -417,12 +420,12 @@ def sweeps(page: Page, axis: Any) -> None:
 # --- beds ---------------------------------------------------------------------------------------
 
 
-GRAINS = {0.0: (600, 25), 0.5: (1500, 40)}  # of a bed, and its width; smooth ones settle slowly
+BEDS = {0.0: (600, 25, 15_000), 0.5: (1500, 40, 12_000)}  # grains, width, steps to come to rest
 
 
-def bed(friction: float, seed: int, steps: int = 12_000) -> Any:
+def bed(friction: float, seed: int) -> Any:
     """Grains that have fallen into a bin."""
-    number, wide = GRAINS[friction]
+    number, wide, steps = BEDS[friction]
     engine = grains(
         (wide, 66), walls=[Plates("x"), Plates("y")], number=number, kinds=[MIXED], seed=seed,
         gravity=[0.0, -1.0], start=RandomStart(), contact={"friction": friction}, timestep=0.005,
@@ -510,7 +513,7 @@ def beds(page: Page, axis: Any) -> None:
             beyond = sizes[sizes > 1.5] - 1.5
             x = np.array([1.5, 6.0])
             tail = np.exp(-(x - 1.5) / beyond.mean()) * len(beyond) / len(sizes) / beyond.mean()
-            axis.plot(x, tail, "k--", lw=1, label="exponential")  # fmt: skip
+            axis.plot(x, tail, "k--", lw=1, label=r"exponential, $\mu$ = 0.5")  # fmt: skip
             even = float(beyond.std() / beyond.mean())
             rows.append(Comparison("P(f) above 1.5 <f>: spread over mean", even,
                                    even / math.sqrt(len(beyond)), 1.0, "",
@@ -584,7 +587,9 @@ def outflow(page: Page, axis: Any) -> None:
         parts = np.array_split(np.flatnonzero(during), 10)
         rates = [float(np.polyfit(times[p], number[p], 1)[0]) for p in parts]
         value, error = mean_and_error(rates)
-        halves.append((*mean_and_error(rates[:5]), *mean_and_error(rates[5:])))
+        (one, of_one), (two, of_two) = mean_and_error(rates[:5]), mean_and_error(rates[5:])
+        what, error_of_two = f"D = {opening}: at 30 to 50 % over before", of_two / two
+        halves.append(Comparison(what, two / one, math.hypot(of_one / one, error_of_two), 1.0))
         rows.append(Comparison(f"D = {opening}: rate", value, error, known))
         values.append(value)
         errors.append(error)
@@ -594,6 +599,7 @@ def outflow(page: Page, axis: Any) -> None:
     straight = np.polyval(np.polyfit(openings, line, 1), openings)
     bent = float(np.abs(line / straight - 1).max())
     page.table(rows)
+    page.table(halves)
     page.text(f"Fit of Beverloo's law: {fit}.")
     slope, zero = np.polyfit(openings, line, 1)
     k = -zero / slope
@@ -604,10 +610,11 @@ def outflow(page: Page, axis: Any) -> None:
         f"C12, rate^(2/3) is linear in D within {100 * bent:.1f} % (at most 3 %)", bent < 0.03
     )
     page.check(f"C12, k = {k:.2f} (1 to 2.5)", 1 < k < 2.5)
-    apart = max(abs(a - b) / math.hypot(ea, eb) for a, ea, b, eb in halves)
+    ratio, error = mean_and_error([c.measured for c in halves])
     page.check(
-        f"C12, both halves of a run: {apart:.1f} s.e. apart at most (below 3.5)", apart < 3.5
-    )
+        f"C12, mean of rates at 30 to 50 % over before: {ratio:.3f} +- {error:.3f} (1, within "
+        "10 %)", abs(ratio - 1) < 0.1,
+    )  # fmt: skip
     axis.errorbar(openings, line, 2 / 3 * np.array(errors) / np.array(values) * line, fmt="o",
                   mfc="white", color=BLUE, label="measured")  # fmt: skip
     axis.plot(openings, theory.beverloo_line(np.array(list(OUTFLOW.values())), 2), "x", color=GREEN,
@@ -678,6 +685,8 @@ def collapses(page: Page, axis: Any) -> None:
     x = np.geomspace(0.6, 8, 100)
     axis.plot(x, theory.run_out(x), "k--", lw=1, label="Staron and Hinch")
     axis.set(xlabel="height over length", ylabel="run-out over length", xscale="log", yscale="log")
+    sparse_logarithm(axis.xaxis, *axis.get_xlim())
+    sparse_logarithm(axis.yaxis, *axis.get_ylim())
     axis.legend()
 
 

@@ -90,3 +90,12 @@ def test_forces_within_the_range_pull_grains_together():
     engine.advance(400)  # they meet, and stay
     assert engine.velocities()[:, 0] == pytest.approx([0.0, 0.0], abs=1e-9)
     assert np.diff(engine.positions()[:, 0])[0] == pytest.approx(1.0, abs=1e-9)
+
+
+def test_grains_beyond_the_range_do_not_pull():
+    engine = rigid(
+        [10, 10], given=at_rest([[4.0, 5.0], [5.06, 5.0]]), timestep=1e-3,
+        contact={"friction": 0.0, "cohesion": {"force": 2.0, "range": 0.05}},
+    )  # fmt: skip
+    engine.advance(100)
+    assert not engine.velocities().any()

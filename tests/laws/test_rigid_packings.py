@@ -42,7 +42,7 @@ def test_contacts_of_a_poured_bed(friction, least, most):
     weight = engine.masses().sum()
     carried = from_walls(engine).sum(axis=0)[:, 1] / engine.timestep / weight
     assert carried.sum() == pytest.approx(1.0, abs=1e-2)
-    assert (carried[2] > 0.98) == (friction == 0.0)
+    assert (abs(carried[2] - 1) < 1e-3) == (friction == 0.0)  # sides bear a part by friction
     # more small forces than large ones, and none far above the mean
     size = forces[on] / forces[on].mean()
     assert 0.5 < (size > 1).mean() * np.e < 1.6

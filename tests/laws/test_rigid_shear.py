@@ -28,7 +28,7 @@ def sheared(places, velocities, dimension=2, rate=RATE, **given):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.long)])
 @pytest.mark.parametrize("up", [1.0, -1.0])
 def test_what_crosses_the_box_goes_on_with_the_speed_of_its_image(dimension, up):
     # x and v_x change by those of the image; one of the two comes to y = 0 but for rounding
@@ -44,7 +44,7 @@ def test_what_crosses_the_box_goes_on_with_the_speed_of_its_image(dimension, up)
     assert engine.images()[0, 1] == up
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_a_collision_across_the_boundary_is_one_with_the_image(dimension):
     """The same as in a box at rest, with the speed of the image given to one of the two."""
     speed, steps = RATE * HEIGHT, 30

@@ -95,7 +95,7 @@ def thrown(walls, dimension, size, floor):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_a_block_is_as_good_a_floor_as_a_plate(dimension):
     if dimension == 2:
         block, size = Rectangle(centre=[6, 1], size=[12, 2]), [12, 10]
