@@ -35,7 +35,9 @@ SCRIPTS = {  # of some seconds, and what they draw and say
     ),
     "draw_islands": ("islands", r"exponent of the last two 0\.3\d, rate equations 1/3"),
     "draw_ping_pong": ("ping_pong", ""),
+    "draw_chain": ("chain", r"5 sweeps: front at 1\.99\d [^$]*100 sweeps: front at 8\.9\d\d "),
     "draw_sintering": ("sintering", r"atoms \{2352\}; neck 7\.8 to 2\d\.\d a"),
+    "draw_solver": ("solver", r"grows by (1\.99\d|2\.00\d) in a sweep"),
     "draw_two_grains": ("two_grains", r"Hertz: restitution 1\.00000 \(theory 1\.00000\)"),
 }
 SHORT, WARMUP = ["--set", "run.steps=100"], ["--set", "run.warmup=20"]
