@@ -34,8 +34,11 @@ class SphereEngine:
     def start(self, placed: Started) -> None:
         """Put the spheres where they start from."""
         if placed.diameters is not None:
-            inertia = self.made.inertia * (placed.diameters / self.made.diameters) ** 2
-            self.made = self.made._replace(diameters=placed.diameters, inertia=inertia)
+            ratio, d = placed.diameters / self.made.diameters, self.dimension
+            masses, inertia = self.made.masses * ratio**d, self.made.inertia * ratio ** (d + 2)
+            self.made = self.made._replace(
+                diameters=placed.diameters, masses=masses, inertia=inertia
+            )
             self.system = self._system()
         self.system.fill(placed.positions, placed.velocities, placed.spins)
 
