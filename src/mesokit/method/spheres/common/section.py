@@ -39,6 +39,7 @@ class Spheres:
     """
 
     hard: ClassVar[bool] = True  # none may lie on another
+    deforms: ClassVar[bool] = False  # overlaps are what forces follow from
     bytes_each: ClassVar[int] = 350  # of memory: states, lists, queue
 
     number: int | None = param(None, doc="how many", symbol="N", ge=1, le=MOST_PARTICLES)

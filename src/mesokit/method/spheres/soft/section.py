@@ -34,6 +34,7 @@ class SoftSpheres(Spheres):
     """
 
     hard: ClassVar[bool] = False
+    deforms: ClassVar[bool] = True
     bytes_each: ClassVar[int] = 600  # of memory: states twice, lists
 
     pair: PairLaw = param(SpringDashpot(), doc="what two spheres do to one another")

@@ -12,7 +12,7 @@ from mesokit.method.spheres.common.start.protocol import Placed, SphereStart
 from mesokit.method.spheres.common.start.random import RandomStart
 from mesokit.method.spheres.common.walls import room_of
 
-APART = 1.003  # diameters of hard ones while they fall: none lies on another afterwards
+APART = 1.003  # diameters of hard and rigid ones while they fall: none lies on another afterwards
 
 
 @component
@@ -20,7 +20,7 @@ class PouredStart(SphereStart):
     """At rest on one another: they have fallen from random places in the box, with friction.
 
     They fall as grains of low restitution do (Cundall and Strack 1979): soft ones as stiff as the
-    springs of the case are, hard ones three thousandths larger than they are, so that they lie a
+    springs of the case are, others three thousandths larger than they are, so that they lie a
     hair's breadth from one another.
     """
 
@@ -44,7 +44,7 @@ class PouredStart(SphereStart):
         from mesokit.method.spheres.soft.settle import settled
 
         self.check(case)
-        larger = made._replace(diameters=(APART if case.spheres.hard else 1.0) * made.diameters)
+        larger = made._replace(diameters=(1.0 if case.spheres.deforms else APART) * made.diameters)
         first = RandomStart().place(case, larger).positions
         found = settled(case, larger, first, self.friction)
         n, d = found.shape
