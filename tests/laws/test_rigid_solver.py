@@ -150,6 +150,34 @@ def test_the_slowest_error_of_a_row_falls_by_a_cosine(order):
     assert measured == pytest.approx(expected, rel=1e-6)
 
 
+def stack(dimension, side, sweeps):
+    """Close-packed layers on a floor, as many as grains are in a row: the largest net force over
+    the weight in the first step."""
+    apart, along = math.sqrt(0.75) if dimension == 2 else math.sqrt(0.5), "xyz"[dimension - 1]
+    layers = np.indices((side,) * dimension).reshape(dimension, -1).T.astype(float)
+    places = layers + 0.25 + 0.5 * (layers[:, -1:] % 2)  # a layer lies in the hollows of the last
+    places[:, -1] = 0.5 + apart * layers[:, -1]
+    engine = rigid(
+        [side] * (dimension - 1) + [side + 4], walls=[Plates(along)], given=at_rest(places),
+        gravity=[0.0] * (dimension - 1) + [-1.0], timestep=1e-3, contact=SMOOTH,
+        solver=solver("random", sweeps),
+    )  # fmt: skip
+    engine.advance(1)
+    return np.abs(engine.velocities()).max() / engine.timestep
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_sweeps_of_a_packing_go_as_its_number_of_grains_to_the_power_of_two_over_d(dimension):
+    """Those in which the slowest error decays by e."""
+    needed = []
+    for side in (6, 12):
+        few, more = 4 * side**2, 6 * side**2
+        errors = [stack(dimension, side, sweeps) for sweeps in (few, more)]
+        needed.append((more - few) / math.log(errors[0] / errors[1]))
+    power = math.log(needed[1] / needed[0]) / math.log(2**dimension)
+    assert power == pytest.approx(2 / dimension, rel=0.05)
+
+
 # --- rigid chains are elastic -------------------------------------------------------------------
 
 

@@ -1,7 +1,8 @@
 """Estimated cost of all methods of spheres, and the summary that shows it.
 
 The constants were measured on one core of an AMD EPYC: those of event-driven dynamics and of soft
-spheres on 2026-11-23 (`examples/which_method.py`), those of contact dynamics on 2026-11-28.
+spheres on 2026-11-23 (`examples/which_method.py`), those of contact dynamics on 2026-11-28, sweeps
+of beds that settle among them (`examples/crossing.py`).
 Estimates are good to a factor of two, ratios of two methods too.
 """
 
@@ -18,6 +19,7 @@ from mesokit.case.warnings import run_warnings
 from mesokit.method.spheres.common.kinds import ball_volume
 from mesokit.method.spheres.common.section import Spheres
 from mesokit.seam.method import Row, Summary
+from mesokit.theory.sweeps import Order
 
 COLLISION = {2: 0.45e-6, 3: 0.7e-6}  # seconds, of two hard spheres
 RENEWAL = {2: 0.7e-6, 3: 1.4e-6}  # seconds, of the list of a hard sphere
@@ -33,6 +35,7 @@ FOUND = {2: 0.4e-6, 3: 0.5e-6}  # seconds, of a rigid grain in a step, for its c
 CONTACTS = {2: 1.8, 3: 2.4}  # of rigid grains in a bed, for each grain, near ones included
 SWEEPS = 500  # most in a step, unless said
 ACCURACY = 1e-4  # of the forces of rigid grains, unless said
+AS_COLUMN = {2: 1.4, 3: 4.0}  # sweeps of a bed that settles, over those of a column as high
 NAMES = {
     "event-driven": "event-driven",
     "soft-spheres": "soft spheres",
@@ -119,13 +122,16 @@ def rigid_seconds(number: int, contacts: float, sweeps: float, dimension: int) -
     return number * FOUND[dimension] + contacts * sweeps * SWEPT[dimension]
 
 
-def sweeps_in_bed(number: int, dimension: int) -> float:
-    """Sweeps in a step of a bed, with the usual keys: those of all forces anew, or the most.
+def sweeps_in_bed(
+    number: int, dimension: int, accuracy: float = ACCURACY, order: Order = "coloured"
+) -> float:
+    """Sweeps in a step of a bed that settles, if there may be as many.
 
-    >>> round(sweeps_in_bed(30, 2)), sweeps_in_bed(3000, 2)
-    (134, 500)
+    >>> round(sweeps_in_bed(300, 2)), round(sweeps_in_bed(300, 3))
+    (1691, 725)
     """
-    return min(theory.packing_sweeps(number, dimension, ACCURACY, "coloured"), SWEEPS)
+    column = theory.packing_sweeps(number, dimension, accuracy, order)
+    return AS_COLUMN[dimension] * column
 
 
 class Bed(NamedTuple):
@@ -143,7 +149,7 @@ class Bed(NamedTuple):
         """Seconds of a core for a time of contact dynamics with the usual keys; settling: the part
         of it in which grains move, and forces change."""
         d, step = self.dimension, math.sqrt(2 * self.diameter / self.gravity) / STEPS_OF_FALL
-        contacts, sweeps = CONTACTS[d] * self.number, sweeps_in_bed(self.number, d)
+        contacts, sweeps = CONTACTS[d] * self.number, min(sweeps_in_bed(self.number, d), SWEEPS)
         moving = rigid_seconds(self.number, contacts, sweeps, d)
         resting = rigid_seconds(self.number, contacts, LASTING, d)
         return (settling * moving + (1 - settling) * resting) * time / step

@@ -133,7 +133,7 @@ def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
         yield "contacts in a step", number(numbers["contacts"]), "that may close, by Enskog"
         return
     contacts, accuracy = cost.CONTACTS[d] * grains, solver.tolerance or cost.ACCURACY
-    needed = theory.packing_sweeps(grains, d, min(accuracy, 0.5), solver.spreads)
+    needed = cost.sweeps_in_bed(grains, d, min(accuracy, 0.5), solver.spreads)
     sweeps = float(solver.sweeps) if solver.tolerance == 0 else min(needed, solver.sweeps)
     numbers |= {"contacts": contacts, "sweeps_needed": needed, "sweeps": sweeps}
     if section.gravity:
