@@ -13,6 +13,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.walls import closed_axes
 from mesokit.method.spheres.common.observe.protocol import OfSpheres, pull_axis
 from mesokit.method.spheres.common.observe.shared.cut_volumes import in_slabs, with_images
+from mesokit.method.spheres.common.region import check_region
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.estimate import Array
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
@@ -54,23 +55,6 @@ class PackingFraction(OfSpheres):
         check_region(self.region, case)
         if self.interior and pull_axis(case) is None:
             raise CaseError("interior = true: expected gravity along one axis")
-
-
-def check_region(region: tuple[tuple[float, float], ...] | None, case: Case) -> None:
-    """Raise CaseError unless a region has [from, to] in the box along each axis."""
-    if region is None:
-        return
-    box = case.box
-    if len(region) != box.dimension:
-        raise CaseError(
-            f"region = {show(region)}: expected [from, to] along each of the {box.dimension} axes"
-        )
-    for axis, (low, high), length in zip(box.axes, region, box.size, strict=True):
-        if not 0 <= low < high <= length:
-            raise CaseError(
-                f"region = {show(region)}: expected 0 <= from < to <= {length:g} along {axis}; not "
-                f"[{low:g}, {high:g}]"
-            )
 
 
 @accumulator_of(PackingFraction)
