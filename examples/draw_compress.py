@@ -91,7 +91,7 @@ def main():
                         label=rf"slope of $e^{{-{DECAY} f}}$")  # fmt: skip
     axes["forces"].set(yscale="log", xlim=(0, 6), ylim=(1e-3, 2), ylabel="probability density",
                        xlabel=r"normal force over its mean, $f/\langle f\rangle$")  # fmt: skip
-    axes["contacts"].set(xlabel=r"time  [$\sqrt{m/P}$]", xlim=(30, 163), ylim=(2, 4.4),
+    axes["contacts"].set(xlabel=r"time  [$\sqrt{m/P}$]", xlim=(40, 163), ylim=(2, 4.4),
                          ylabel="contacts of a grain, rattlers left out")  # fmt: skip
     for name in ("forces", "contacts"):
         axes[name].legend()

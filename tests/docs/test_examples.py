@@ -41,7 +41,7 @@ SCRIPTS = {  # of some seconds, and what they draw and say
     "draw_two_grains": ("two_grains", r"Hertz: restitution 1\.00000 \(theory 1\.00000\)"),
 }
 SHORT, WARMUP = ["--set", "run.steps=100"], 20
-WARMUPS = {"compress": 1700}  # until plates have come to the grains
+WARMUPS = {"compress": 2200}  # until plates have come to the grains
 
 
 @pytest.mark.parametrize("case", EXAMPLES, ids=lambda case: case.stem)
