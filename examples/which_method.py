@@ -1,9 +1,10 @@
-"""Which method for grains: what soft spheres and event-driven dynamics cost, for the same grains.
+"""Which method for grains: what soft spheres, event-driven and contact dynamics cost.
 
 python which_method.py     writes which_method.png and which_method.md; some minutes, one core
 
-The same gas by both, from packing fractions where spheres fly 500 radii to those of a crystal; and
-a bed of grains that comes to rest. That both give the same physics: dilute_gas.py.
+The same gas by all, from packing fractions where spheres fly 500 radii to those of a crystal; and
+a bed of grains that comes to rest. That the first two give the same physics: dilute_gas.py. From
+which stiffness contact dynamics is cheaper than soft spheres: crossing.py.
 """
 
 import math
@@ -24,6 +25,8 @@ from mesokit import (
     HardCollision,
     HardSpheres,
     Plates,
+    RigidContact,
+    RigidSpheres,
     Run,
     Simulation,
     SoftSpheres,
@@ -32,19 +35,26 @@ from mesokit import (
     theory,
 )
 from mesokit.method.spheres.common.kinds import ball_volume
-from mesokit.report.style import COLOURS, STYLE, lettered
+from mesokit.report.style import COLOURS, LINES, MARKERS, STYLE, lettered
 
 SHORT = "--short" in sys.argv  # a quick try
-ROUNDS, SECONDS = (2, 0.05) if SHORT else (8, 0.25)  # of each measurement, in turn
+ROUNDS, SECONDS = (2, 0.05) if SHORT else (6, 0.05)  # of each measurement, in turn
 GRAINS = 1000
 CONTACT_TIMES = (1e-3, 1e-2, 1e-1)  # in units of diameter sqrt(m/kT)
 FRACTIONS = {
     2: (1.11e-3, 1e-2, 0.1, 0.3, 0.5, 0.6, 0.75, 0.82, 0.86, 0.88, 0.89, 0.9),
     3: (4.7e-4, 1e-2, 0.1, 0.3, 0.45, 0.6, 0.68, 0.71, 0.725),
 }
+OPEN = {2: 0.82, 3: 0.68}  # up to where gaps are as wide as steps of contact dynamics are long
 LEAST = 200  # steps of soft spheres, or collisions of all, in one measurement
-HUES = {"event-driven": COLOURS[0], "soft": COLOURS[1]}
-LOOKS = ("-", "--", ":")  # of contact times
+METHODS = {
+    HardSpheres: "event-driven",
+    RigidSpheres: "contact-dynamics",
+    SoftSpheres: "soft-spheres",
+}
+HUES = {"event-driven": COLOURS[0], "soft": COLOURS[1], "rigid": COLOURS[2]}
+FORMS = {"event-driven": MARKERS[0], "soft": MARKERS[1], "rigid": MARKERS[2]}
+LOOKS = (LINES[0], LINES[1], LINES[3])  # of contact times
 
 
 class Cost(NamedTuple):
@@ -54,10 +64,10 @@ class Cost(NamedTuple):
     error: float
 
 
-def engine(spheres, box, walls=()):
-    """The engine of spheres of either method."""
-    method = "event-driven" if isinstance(spheres, HardSpheres) else "soft-spheres"
-    case = Case(run=Run(0, method=method), box=box, walls=walls, spheres=spheres)
+def engine(spheres, box, walls=(), seed=1):
+    """The engine of spheres of any method."""
+    run = Run(0, method=METHODS[type(spheres)], seed=seed)
+    case = Case(run=run, box=box, walls=walls, spheres=spheres)
     return Simulation(case, threads=1).engine
 
 
@@ -79,8 +89,11 @@ def lattice_number(dimension, about):
     return rows * round(about / rows)
 
 
-def once(engine, least):
-    """CPU time and time flown of one measurement."""
+def once(engine, least, first):
+    """CPU time and time flown of one measurement; rigid grains begin with the first state, since a
+    dense elastic gas of them cools."""
+    if isinstance(engine.case.spheres, RigidSpheres):
+        engine.restore(first)
     begun, at = time.process_time(), engine.time
     while True:
         engine.advance(least)
@@ -91,9 +104,13 @@ def once(engine, least):
 
 def costs(engines):
     """Of several engines, measured in turn."""
+    firsts = [some.state() for some, _ in engines]
     for some, least in engines:
         some.advance(least)
-    taken = [[once(some, least) for some, least in engines] for _ in range(ROUNDS)]
+    taken = [
+        [once(*pair, first) for pair, first in zip(engines, firsts, strict=True)]
+        for _ in range(ROUNDS)
+    ]
     found = []
     for (some, _), rows in zip(engines, zip(*taken, strict=True), strict=True):
         each = [1e6 * took / flown / some.n for took, flown in rows]
@@ -101,8 +118,19 @@ def costs(engines):
     return found
 
 
+def rigid_gas(hard, box):
+    """The engine of rigid grains with the places and velocities of hard spheres."""
+    elastic = RigidContact(friction=0.0, restitution=1.0)
+    spheres = RigidSpheres(number=hard.n, kT=1.0, contact=elastic)
+    case = Case(run=Run(0, method="contact-dynamics"), box=box, spheres=spheres)
+    spins = np.zeros(hard.n if hard.dimension == 2 else (hard.n, 3))
+    start = {"positions": hard.positions(), "velocities": hard.velocities(), "spins": spins}
+    return Simulation(case, threads=1, **start).engine
+
+
 def gas(dimension, fraction):
-    """Costs of event-driven dynamics and of soft spheres, and collisions per time of a sphere."""
+    """Costs of event-driven dynamics, soft spheres and contact dynamics, and collisions per time of
+    a sphere."""
     number = lattice_number(dimension, GRAINS)
     box = box_of(dimension, fraction, number)
     rate = 2 * dimension * (pressure(dimension, fraction) - 1) / math.sqrt(math.pi)
@@ -113,8 +141,9 @@ def gas(dimension, fraction):
     ]
     hard.advance(100)  # the lattice melts, or begins to shake
     hard.end_warmup()
-    begun = hard.time
-    found = costs([(hard, 20), *((some, LEAST) for some in soft)])
+    begun, engines = hard.time, [(hard, 20), *((some, LEAST) for some in soft)]
+    found = costs(engines if fraction > OPEN[dimension] else [*engines, (rigid_gas(hard, box), 20)])
+    found += [None] * (2 + len(CONTACT_TIMES) - len(found))
     return found, 2 * hard.collisions[0] / number / (hard.time - begun)
 
 
@@ -137,19 +166,17 @@ def crossing(fractions, hard, soft):
 
 
 def bed(contact_time, seed, until):
-    """Costs in each unit of time of grains that fall and come to rest: (until, 2)."""
+    """Costs in each unit of time of grains that fall and come to rest: (until, 3)."""
     box, walls = Box([20, 40]), [Plates("y")]
     given = {
         "number": 300, "kinds": [SphereKind(spread=0.1)], "kT": 0.1, "gravity": [0, -1],
     }  # fmt: skip
     hard = HardSpheres(**given, collision=HardCollision(restitution=0.6, contact_time=contact_time))
     soft = SoftSpheres(**given, pair=SpringDashpot(restitution=0.6, contact_time=contact_time))
-    found = []
-    engines = []
-    for spheres, method in ((hard, "event-driven"), (soft, "soft-spheres")):
-        case = Case(run=Run(0, method=method, seed=seed), box=box, walls=walls, spheres=spheres)
-        engines.append(Simulation(case, threads=1).engine)
-        engines[-1].advance(0)
+    rigid = RigidSpheres(**given, contact=RigidContact(friction=0.0, restitution=0.6))
+    found, engines = [], [engine(spheres, box, walls, seed) for spheres in (hard, soft, rigid)]
+    for some in engines:
+        some.advance(0)
     for _ in range(until):
         row = []
         for some in engines:
@@ -171,27 +198,33 @@ def gases(figure_axes, lines):
     for dimension, ax in figure_axes.items():
         fractions = FRACTIONS[dimension]
         rows, rates = zip(*(gas(dimension, phi) for phi in fractions), strict=True)
-        hard, *soft = zip(*rows, strict=True)
+        hard, *soft, rigid = zip(*rows, strict=True)
+        rigid = [cost for cost in rigid if cost is not None]
         lines += [
             f"## {dimension}D",
             "",
             "| packing fraction | collisions per time | event-driven | "
             + " | ".join(f"soft, {t:g}" for t in CONTACT_TIMES)
-            + " |",
-            "|---" * (3 + len(CONTACT_TIMES)) + "|",
+            + " | contact dynamics |",
+            "|---" * (4 + len(CONTACT_TIMES)) + "|",
         ]
         for k, phi in enumerate(fractions):
-            cells = [rounded(cost) for cost in rows[k]]
+            cells = ["" if cost is None else rounded(cost) for cost in rows[k]]
             lines.append(f"| {phi:g} | {rates[k]:.4g} | " + " | ".join(cells) + " |")
         lines.append("")
-        ax.errorbar(
-            fractions, [c.value for c in hard], [c.error for c in hard], fmt="o-", ms=4,
-            color=HUES["event-driven"], label="event-driven",
-        )  # fmt: skip
+        for name, label, those in (
+            ("event-driven", "event-driven", hard),
+            ("rigid", "contact dynamics", rigid),
+        ):
+            ax.errorbar(
+                fractions[: len(those)], [c.value for c in those], [c.error for c in those],
+                fmt=FORMS[name] + "-", ms=4, color=HUES[name], label=label,
+            )  # fmt: skip
         for times, look, contact_time in zip(soft, LOOKS, CONTACT_TIMES, strict=True):
             ax.errorbar(
-                fractions, [c.value for c in times], [c.error for c in times], fmt="s", ms=3,
-                ls=look, color=HUES["soft"], label=f"soft, contact time {contact_time:g}",
+                fractions, [c.value for c in times], [c.error for c in times],
+                fmt=FORMS["soft"], mfc="white", ms=3.5, ls=look, color=HUES["soft"],
+                label=f"soft, contact time {contact_time:g}",
             )  # fmt: skip
             at = crossing(fractions, hard, times)
             lines.append(
@@ -209,18 +242,22 @@ def gases(figure_axes, lines):
 
 def beds(ax, lines):
     """Costs against time of grains that come to rest."""
-    lines += ["## Bed", "", "| contact time | time | event-driven | soft |", "|---|---|---|---|"]
-    for look, contact_time, until in (("-", 2e-3, 40), ("--", 1e-2, 60)):
-        seeds = range(1, 3 if SHORT else 5)
+    head = "| contact time | time | event-driven | soft | contact dynamics |"
+    lines += ["## Bed", "", head, "|---|---|---|---|---|"]
+    for look, contact_time, until in (("-", 2e-3, 36), ("--", 1e-2, 60)):
+        seeds = range(1, 3)
         all_of = np.array([bed(contact_time, seed, 5 if SHORT else until) for seed in seeds])
         mean, error = all_of.mean(axis=0), all_of.std(axis=0, ddof=1) / math.sqrt(len(seeds))
         times = np.arange(len(mean)) + 0.5
         for column, (name, label) in enumerate(
-            (("event-driven", "event-driven"), ("soft", "soft"))
+            (("event-driven", "event-driven"), ("soft", "soft"), ("rigid", "contact dynamics"))
         ):
+            if name == "rigid" and look != "-":
+                continue  # it has no contact time
+            with_time = f", contact time {contact_time:g}" if name != "rigid" else ""
             ax.plot(
-                times, mean[:, column], ls=look, color=HUES[name],
-                label=f"{label}, contact time {contact_time:g}",
+                times, mean[:, column], ls=look, color=HUES[name], label=label + with_time,
+                marker=FORMS[name], markevery=5, ms=4, mfc="white" if name == "soft" else None,
             )  # fmt: skip
             low, high = (mean + sign * error for sign in (-1, 1))
             ax.fill_between(times, low[:, column], high[:, column], color=HUES[name], alpha=0.2)
@@ -229,7 +266,7 @@ def beds(ax, lines):
             lines.append(f"| {contact_time:g} | {times[k]:g} | " + " | ".join(cells) + " |")
         above = np.flatnonzero(mean[:, 0] > mean[:, 1])
         if len(above):
-            lines.append(f"| {contact_time:g} | {times[above[0]]:g} | first dearer | |")
+            lines.append(f"| {contact_time:g} | {times[above[0]]:g} | dearer than soft | | |")
     lines.append("")
     ax.set(yscale="log", xlabel=r"time  [$\sqrt{d/g}$]")
     ax.set_ylabel(r"cost  [$\mu$s per grain and $\sqrt{d/g}$]")
