@@ -116,10 +116,8 @@ class ContactNetworkAccumulator(GroupAccumulator):
         grains = max(2, round(float(sums[BEARERS]))) if alone else None
         known = theory.isostatic_coordination(self.dimension, self.rubs, grains)
         if self.rubs:
-            return (
-                known,
-                "approximate: isostatic with infinite friction; a packing at rest has as many or more",
-            )
+            note = "isostatic with infinite friction; a packing at rest has as many or more"
+            return known, f"approximate: {note}"
         return known, "approximate: isostatic, of a packing that just bears its load"
 
     def fabric(self, mean: Estimate) -> Iterator[Comparison]:
