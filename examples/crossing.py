@@ -339,7 +339,8 @@ def table(rows):
         lines += ["", "| quantity | grains | value | exponent | expected |", "|---" * 5 + "|"]
         for name, (numbers, values, errors, expected) in found.items():
             fit = power_law(numbers, values, errors)
-            last = f"{fit.power:.2f} +- {fit.error:.2f} | {expected or 0:.2f}"
+            last = f"{fit.power:.2f} +- {fit.error:.2f} | "
+            last += f"{expected:.2f}" if expected else ""
             for number, value, error in zip(numbers, values, errors, strict=True):
                 lines.append(
                     f"| {name} | {number:g} | {value:.3g} +- {100 * error:.0f} % | {last} |"

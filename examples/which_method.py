@@ -281,6 +281,8 @@ def main():
     gases({2: axes[0], 3: axes[1]}, lines)
     beds(axes[2], lines)
     axes[1].sharey(axes[0])
+    axes[0].set_ylim(bottom=3e-3)  # room for legends
+    axes[2].set_ylim(bottom=0.02)
     for ax in axes:
         ax.grid(alpha=0.3, lw=0.5)
     Path("which_method.md").write_text("\n".join(lines))
