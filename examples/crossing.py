@@ -1,6 +1,6 @@
 """Soft spheres or contact dynamics: from which stiffness rigid grains are cheaper, by their number.
 
-python crossing.py                writes crossing.png and crossing.md; half an hour, one core
+python crossing.py                writes crossing.png and crossing.md; an hour, one core
 python crossing.py 2 400          measures 400 disks only; `crossing.jsonl` keeps what is measured
 
 The same grains fall from the same places and come to rest by both methods; and the forces of grains
@@ -57,7 +57,7 @@ SEEDS = {
     2: {100: 4, 200: 3, 400: 3, 800: 2, 1600: 2, 3200: 2, 10_000: 1},
     3: {100: 4, 250: 3, 600: 3, 1500: 2, 4000: 2},
 }
-SETTLED = {2: 800, 3: 1500}  # largest number of rigid grains that are watched until they rest
+SETTLED = {2: 800, 3: 600}  # largest number of rigid grains that are watched until they rest
 STEPS_OF_SOFT = 2e8, 2e7  # grains times steps of soft spheres, at most; of more seeds
 ALL_OF = 2, 100  # dimension and number of grains that have all stiffnesses, whatever they take
 STIFFNESS = [10.0**k for k in range(2, 9)]  # K r^2/(m v^2), v^2 = g d: after a fall by a radius
