@@ -27,7 +27,8 @@ from tests.helpers.fake_fluid import FakeFluid
 from tests.helpers.known_flows import FRAMES, MAPS, SPIN, Disk, results_of
 
 SIZE = (12, 10)
-OF_FLUIDS = [kind for kind in KINDS if kind not in ("disks", "flock", "sites")]
+OF_GRAINS = ("disks", "force-chains")
+OF_FLUIDS = [kind for kind in KINDS if kind not in (*OF_GRAINS, "flock", "sites")]
 
 
 @pytest.fixture
