@@ -235,6 +235,10 @@ from mesokit.method.spheres.hard.observe.free_times import FreeTimes as FreeTime
 from mesokit.method.spheres.hard.section import HardSpheres as HardSpheres
 from mesokit.method.spheres.rigid.law.cohesion import ContactCohesion as ContactCohesion
 from mesokit.method.spheres.rigid.law.contact import RigidContact as RigidContact
+from mesokit.method.spheres.rigid.observe.plate_motion import PlateMotion as PlateMotion
+from mesokit.method.spheres.rigid.observe.solver_residual import (
+    SolverResidual as SolverResidual,
+)
 from mesokit.method.spheres.rigid.section import RigidSpheres as RigidSpheres
 from mesokit.method.spheres.rigid.solver.gauss_seidel import GaussSeidel as GaussSeidel
 from mesokit.method.spheres.rigid.solver.jacobi import Jacobi as Jacobi

@@ -62,7 +62,7 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
                          ("wall[#1].lower.contact.frequency = 50", "at least 6", "0.0209")),
     "no skin": ({STEP: "skin = 0"}, ("spheres.skin = 0", "above 0")),
     "thick skin": ({STEP: "skin = 10"}, ("spheres.skin = 10", "less than 9", "along x")),
-    "push back": ({STEP: "push_back = 1.5"}, ("spheres.push_back = 1.5", "at most 1")),
+    "push back": ({STEP: "push_back = 0.6"}, ("spheres.push_back = 0.6", "at most 0.5")),
     "sticky friction": ({LAW: "friction = -0.5"},
                         ("spheres.contact.friction = -0.5", "at least 0")),
     "bouncing up": ({LAW: "restitution = 1.1"}, ("restitution = 1.1", "at most 1")),

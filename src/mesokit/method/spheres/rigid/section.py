@@ -46,7 +46,7 @@ class RigidSpheres(Spheres):
         le=1e9,
     )
     push_back: float = param(
-        0.0, doc="share of an overlap by which two are moved apart in a step", ge=0, le=1
+        0.0, doc="share of an overlap by which two are moved apart in a step", ge=0, le=0.5
     )
     skin: float | None = param(
         None,

@@ -24,6 +24,7 @@ NEAR = 3.0  # contacts near enough to close in a step, for each that closes
 DENSE = 0.75  # of the packing fraction of a bed: from there on forces cross the packing
 COARSE = 10  # steps in the fall by a diameter, below which paths and times are off
 MOVED = 0.1  # diameters in a step at the usual speed, above which it is coarse
+OFTEN = 0.02  # collisions of a grain in a step, above which bounces lose energy
 YIELDS = 1e-3  # diameters by which a bed yields under its weight, from which it acts elastic
 
 
@@ -214,6 +215,13 @@ def _warnings(case: Case, numbers: dict[str, Any]) -> Iterator[str]:
             "sweep in dense packings; expected a smaller relaxation, or rule 'gauss-seidel'"
         )
     bounces = max(scales.restitutions(case))
+    flight = cost.flight_of(section, case.box)
+    often = 0.0 if flight is None else flight.rate * numbers["timestep"]
+    if bounces > 0 and often > OFTEN:
+        yield (
+            f"spheres.timestep = {numbers['timestep']:.3g}: a grain collides {often:.2g} times in "
+            "a step; bounces of several at once take energy that restitution would leave them"
+        )
     if bounces > 0 and crowded(case):
         yield (
             f"spheres.contact.restitution = {bounces:g}: right for contacts of two; grains that "

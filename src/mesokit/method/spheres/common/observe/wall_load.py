@@ -16,10 +16,11 @@ from mesokit.method.spheres.common.observe.wall_force import exact, surface_name
 from mesokit.seam.engine import Array, RunningSpheres
 from mesokit.seam.estimate import of_mean, of_ratio
 from mesokit.seam.observable import BlockAccumulator, accumulator_of
-from mesokit.seam.result import Comparison, Result
+from mesokit.seam.result import Comparison, Result, joined
 from mesokit.statistics import Blocks
 
 USUAL_RATIO = 0.5  # of horizontal over vertical stress
+FROZEN = 1e-4  # relative error of a load that tells of one state alone
 
 
 @component
@@ -149,6 +150,10 @@ class WallLoadAccumulator(BlockAccumulator):
         law, note = self.law(np.array([height])), ""
         if law is not None:
             note = f"approximate: Janssen, with a stress ratio of {self.observable.ratio:g}"
+        if load > weight:
+            note = joined(note, "side walls press the filling down, as after a fall")
+        if exact(share)[0] < FROZEN * abs(load / weight):
+            note = joined(note, "of one filling at rest: those of other seeds differ by more")
         known = np.nan if law is None else float(law[0])
         what = "load on the floor over the weight"
         yield Comparison(what, load / weight, exact(share)[0], known, "", note)
