@@ -29,7 +29,6 @@ from mesokit.method.spheres.rigid.engine.sliding import across
 from mesokit.method.spheres.rigid.engine.sweep import pair_of, part_of, relative, turns
 from mesokit.method.spheres.rigid.law.coulomb import cut
 from mesokit.method.spheres.rigid.law.frame import impulse, parts, sliding
-from mesokit.method.spheres.rigid.solver.protocol import COLOURED, TOGETHER
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import by_type, generic, scalar
 from mesokit.scalar.vector import added, added_scaled, dot, first, outer, scaled
@@ -194,25 +193,21 @@ def count_losses(law, world, order, c, push, drag, taken):
 
 
 @scalar
-def push_back(worker, law, solver, world, order, total):
+def push_back(worker, law, world, order):
     """Move grains that overlap apart, by a share of their overlap, as if each had no neighbours."""
-    if solver.order == COLOURED or solver.order == TOGETHER:
-        for k in range(MOST_COLOURS + 1):
-            low, high = order.colours[k], order.colours[k + 1]
-            if low < high:
-                low, high = part_of(worker, k, low, high)
-                push_some_back(law, world, order, low, high)
-                barrier(worker)
-    else:
-        if worker.thread == 0:
-            push_some_back(law, world, order, 0, total)
-        barrier(worker)
+    for k in range(MOST_COLOURS + 1):
+        low, high = order.colours[k], order.colours[k + 1]
+        if low < high:
+            low, high = part_of(worker, k, low, high)
+            push_some_back(law, world, order, low, high)
+            barrier(worker)
 
 
 @scalar
 def push_some_back(law, world, order, low, high):
     """The same of the contacts from number `low` to before `high`."""
     place, motion, flat, n = world.bodies.place, world.motion, world.flat, len(world.bodies.number)
+    # Gaps and places at t. Each of two moves by its share of the inverse mass, so that walls stay.
     for c in range(np.uint64(low), np.uint64(high)):
         i, j = pair_of(order.pair, c)
         if order.beside[c, GAP] < 0.0:

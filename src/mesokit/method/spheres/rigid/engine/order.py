@@ -21,7 +21,9 @@ def arrange(worker, solver, n, plates, found, order, noted):
     total = by_number(worker, n, most, found, order, noted)
     if solver.order == COLOURED or solver.order == TOGETHER:
         colour(worker, n, plates, most, total, found, order, noted)
-    else:
+    else:  # none has a colour: one thread updates them all
+        order.colours[:] = 0
+        order.colours[MOST_COLOURS + 1] = total
         for q in range(total):
             order.at[order.by_number[q]] = q
     return total

@@ -133,7 +133,7 @@ def advance(worker, counter, steps, rules, world, found, order, sums):
         mine[TOUCHING] = float(touching)
         if law.push_back > 0.0:
             barrier(worker)
-            push_back(worker, law, solver, there, order, total)
+            push_back(worker, law, there, order)
         barrier(worker)
         if worker.thread == 0:
             move_plates(motion, world)

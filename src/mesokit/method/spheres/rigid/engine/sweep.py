@@ -36,7 +36,7 @@ from mesokit.method.spheres.rigid.law.coulomb import dragged
 from mesokit.method.spheres.rigid.law.frame import impulse, sliding, turn
 from mesokit.method.spheres.rigid.law.rolling import resisted
 from mesokit.method.spheres.rigid.law.signorini import pushed
-from mesokit.method.spheres.rigid.solver.protocol import COLOURED, RANDOM, TOGETHER
+from mesokit.method.spheres.rigid.solver.protocol import RANDOM, TOGETHER
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
@@ -205,19 +205,14 @@ def pair_of(pair, c):
 
 
 @scalar
-def begin_sweeps(worker, law, solver, world, order, total):
+def begin_sweeps(worker, law, world, order):
     """Give the impulses of the last step, and those of cohesion, to all grains."""
-    if solver.order == COLOURED or solver.order == TOGETHER:
-        for k in range(MOST_COLOURS + 1):
-            first, last = order.colours[k], order.colours[k + 1]
-            if first < last:
-                first, last = part_of(worker, k, first, last)
-                give(law, world, order, first, last)
-                barrier(worker)
-    else:
-        if worker.thread == 0:
-            give(law, world, order, 0, total)
-        barrier(worker)
+    for k in range(MOST_COLOURS + 1):
+        first, last = order.colours[k], order.colours[k + 1]
+        if first < last:
+            first, last = part_of(worker, k, first, last)
+            give(law, world, order, first, last)
+            barrier(worker)
 
 
 @scalar
@@ -289,24 +284,21 @@ def sweep_shuffled(law, world, order, total, scale, seen):
 def sweep(worker, law, solver, draw, world, order, total, scale):
     """One sweep of all threads; what this thread has seen."""
     seen = Seen(0.0, np.int64(0), 0, 0.0)
-    if solver.order == COLOURED:
-        # Threads share the contacts of a colour, and wait for one another before the next.
-        for k in range(MOST_COLOURS + 1):
-            first, last = order.colours[k], order.colours[k + 1]
-            if first < last:
-                first, last = part_of(worker, k, first, last)
-                seen = sweep_some(law, world, order, first, last, scale, seen)
-                barrier(worker)
-    elif solver.order == TOGETHER:
-        seen = sweep_together(worker, law, solver, world, order, total, scale, seen)
-    else:
+    if solver.order == TOGETHER:
+        return sweep_together(worker, law, solver, world, order, total, scale, seen)
+    if solver.order == RANDOM:
         if worker.thread == 0:
-            if solver.order == RANDOM:
-                shuffle(draw.counter, draw.sweep, total, order.shuffled)
-                seen = sweep_shuffled(law, world, order, total, scale, seen)
-            else:
-                seen = sweep_some(law, world, order, 0, total, scale, seen)
+            shuffle(draw.counter, draw.sweep, total, order.shuffled)
+            seen = sweep_shuffled(law, world, order, total, scale, seen)
         barrier(worker)
+        return seen
+    # Threads share the contacts of a colour, and wait for one another before the next.
+    for k in range(MOST_COLOURS + 1):
+        first, last = order.colours[k], order.colours[k + 1]
+        if first < last:
+            first, last = part_of(worker, k, first, last)
+            seen = sweep_some(law, world, order, first, last, scale, seen)
+            barrier(worker)
     return seen
 
 
@@ -349,7 +341,7 @@ def solve(worker, law, solver, counter, world, order, total, noted):
     """Sweep until impulses hardly change, or as often as allowed: sweeps done, largest change of
     the last one over the mean impulse, the mean, and the number of contacts with an impulse."""
     mine = noted[worker.thread]
-    begin_sweeps(worker, law, solver, world, order, total)
+    begin_sweeps(worker, law, world, order)
     done, ratio, mean, touching, scale = 0, 0.0, 0.0, np.int64(0), 0.0
     # Sums of impulses are whole parts of the largest one of the sweep before, so that they have no
     # order. All threads see the same numbers, and end together.
