@@ -34,6 +34,7 @@ METHODS = {
     RigidSpheres: "contact-dynamics",
 }
 BED = {**GRAINS, "gravity": [0, -1]}
+ELASTIC = RigidContact(friction=0, restitution=1)
 SMOOTH, BOUNCY = RigidContact(friction=0), RigidContact(restitution=0.5)
 
 
@@ -60,6 +61,7 @@ def warnings(spheres, walls):
         (RigidSpheres(**BED, solver=Jacobi()), [Plates("y")], "'jacobi': errors of forces grow"),
         (RigidSpheres(**BED, timestep=0.15), [Plates("y")], "takes 9.43 steps"),
         (RigidSpheres(**BED, timestep=0.02), [Plates("y")], "falls through the whole box"),
+        (RigidSpheres(packing_fraction=0.75, kT=1.0, contact=ELASTIC), [], "times in a step"),
         (RigidSpheres(**GRAINS, kT=1.0, timestep=0.04), [], "move by 0.12 diameters in a step"),
     ],
 )  # fmt: skip

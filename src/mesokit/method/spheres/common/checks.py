@@ -17,6 +17,24 @@ def periodic_axes(case: Case) -> list[tuple[str, float]]:
     return [(axis, length) for axis, length in pairs if axis not in shut]
 
 
+def check_box(case: Case, reach_name: str) -> None:
+    """Raise CaseError for a box so narrow that a pair would be on a list twice; `reach_name`: what
+    messages call the distance up to which two act on one another."""
+    section, box = case.spheres, case.box
+    reach, shut = section.reach(box), closed_axes(case.walls)
+    for axis, length in periodic_axes(case):
+        if length < 2 * reach:
+            raise CaseError(
+                f"box.size = {show(list(box.size))}: expected at least twice the {reach_name} "
+                f"({2 * reach:g}) along {axis}"
+            )
+        if length < 2 * (reach + section.skin_of(box, shut)):
+            raise CaseError(
+                f"spheres.skin = {show(section.skin)}: expected less than "
+                f"{0.5 * length - reach:.3g}, half of the box along {axis} less the reach"
+            )
+
+
 def check_spins(case: Case, turned: bool, expected: str) -> None:
     """Raise CaseError for initial spins where nothing turns spheres."""
     if case.spheres.spin_kT and not turned:

@@ -6,14 +6,13 @@ from mesokit.case.case import Case
 from mesokit.case.component import name_of, show
 from mesokit.errors import CaseError
 from mesokit.geometry import walls
-from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common.checks import (
+    check_box,
     check_floor,
     check_plates,
     check_spins,
-    periodic_axes,
     rubs,
 )
 from mesokit.method.spheres.common.walls import other_walls, surface_rows
@@ -40,7 +39,7 @@ def check_rigid(case: Case) -> None:
     check_plates(case)
     _check_contact(case)
     _check_shear(case)
-    _check_box(case)
+    check_box(case, "largest diameter")
     check_floor(case)
     check_spins(case, section.turns or rubs(case), "spheres.contact.friction above 0")
     _check_range(case)
@@ -116,23 +115,6 @@ def _check_shear(case: Case) -> None:
             raise CaseError(
                 f"{given}: not with spheres.gravity = {show(list(case.spheres.gravity))}: the box "
                 f"repeats along {axis}; leave one out"
-            )
-
-
-def _check_box(case: Case) -> None:
-    """The box is so wide that no pair is twice on a list."""
-    section, box = case.spheres, case.box
-    reach, shut = section.reach(box), closed_axes(case.walls)
-    for axis, length in periodic_axes(case):
-        if length < 2 * reach:
-            raise CaseError(
-                f"box.size = {show(list(box.size))}: expected at least twice the largest diameter "
-                f"({2 * reach:g}) along {axis}"
-            )
-        if length < 2 * (reach + section.skin_of(box, shut)):
-            raise CaseError(
-                f"spheres.skin = {show(section.skin)}: expected less than "
-                f"{0.5 * length - reach:.3g}, half of the box along {axis} less the reach"
             )
 
 

@@ -4,14 +4,13 @@ from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry import walls
-from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common.checks import (
+    check_box,
     check_floor,
     check_plates,
     check_spins,
-    periodic_axes,
     rubs,
 )
 from mesokit.method.spheres.common.walls import other_walls, surface_rows
@@ -38,18 +37,7 @@ def check_soft(case: Case) -> None:
     check_plates(case)
     if not isinstance(section.pair, ContactLaw):
         _check_potential(case)
-    reach, shut = section.reach(box), closed_axes(case.walls)
-    for axis, length in periodic_axes(case):
-        if length < 2 * reach:
-            raise CaseError(
-                f"box.size = {show(list(box.size))}: expected at least twice the reach of the pair "
-                f"law ({2 * reach:g}) along {axis}"
-            )
-        if length < 2 * (reach + section.skin_of(box, shut)):
-            raise CaseError(
-                f"spheres.skin = {show(section.skin)}: expected less than "
-                f"{0.5 * length - reach:.3g}, half of the box along {axis} less the reach"
-            )
+    check_box(case, "reach of the pair law")
     check_floor(case)
     if section.timestep is not None and isinstance(section.pair, ContactLaw):
         longest = scales.shortest_contact(case) / scales.REFUSED
