@@ -91,6 +91,13 @@ def test_examples_are_templates(name: str, here: Path) -> None:
     assert made.title == Case.from_toml(ROOT / "examples" / f"{name}.toml").title
 
 
+@pytest.mark.parametrize("name", [*EXAMPLES])
+def test_examples_are_run_where_they_stand(name: str) -> None:
+    """`mesokit new` writes the commands of the comment for the new file: it looks for these words."""
+    text = (ROOT / "examples" / f"{name}.toml").read_text("utf-8")
+    assert f"mesokit run {name.rpartition('/')[2]}.toml" in text
+
+
 def test_a_picture_of_solids_comes_along(here: Path) -> None:
     new("junction")
     assert (here / "junction.png").read_bytes() == (ROOT / "examples/junction.png").read_bytes()
