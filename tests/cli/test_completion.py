@@ -93,7 +93,7 @@ def test_examples_are_templates(name: str, here: Path) -> None:
 
 @pytest.mark.parametrize("name", [*EXAMPLES])
 def test_examples_are_run_where_they_stand(name: str) -> None:
-    """`mesokit new` writes the commands of the comment for the new file: it looks for these words."""
+    """`mesokit new` looks for these words, and writes them for the new file."""
     text = (ROOT / "examples" / f"{name}.toml").read_text("utf-8")
     assert f"mesokit run {name.rpartition('/')[2]}.toml" in text
 
