@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from mesokit.case import checks, methods, toml
 from mesokit.case.box import Box
-from mesokit.case.component import build, component, known_keys, nearest, one_of, param, show
+from mesokit.case.component import (
+    build,
+    component,
+    is_component,
+    known_keys,
+    nearest,
+    one_of,
+    param,
+    show,
+)
 from mesokit.case.describe.shown import Shown
 from mesokit.case.registry import FAMILIES
 from mesokit.case.run import Log, Run
@@ -166,6 +175,7 @@ class Case(Shown):
         fields = {key: field for field, key in keys.items()}
         values = {fields.get(key, key): value for key, value in data.items()}
         _require_sections(made, values)
+        _require_keys(made, values)
         return build(made, values, keys, folder)
 
     def to_toml(self, folder: Path | None = None) -> str:
@@ -233,3 +243,28 @@ def _require_sections(made: type[Case], given: Mapping[str, Any], where: str = "
             else:
                 hint = nearest(key, names) or f"; valid here: {', '.join(names)}"
             raise CaseError(f"{where}{key}: unknown key of method {show(method.name)}{hint}")
+
+
+def _require_keys(made: type[Case], given: Mapping[str, Any]) -> None:
+    """Raise CaseError for a key that only other methods have in a section of the same name."""
+    for section, values in given.items():
+        own = _section(made, section)
+        if own is None or not isinstance(values, dict):
+            continue
+        for key in set(values).difference(known_keys(own)):
+            every = {name: _section(case_class(name), section) for name in methods.METHODS}
+            others = {n: known_keys(cls) for n, cls in every.items() if cls is not None}
+            theirs = [name for name, keys in others.items() if key in keys]
+            if theirs:
+                alone = [k for k in known_keys(own) if not all(k in others[n] for n in theirs)]
+                name = show(made._method.name)
+                raise CaseError(
+                    f"{section}.{key}: unknown key of method {name}, but one of {one_of(theirs)}; "
+                    f"{name} has {', '.join(alone)} of its own"
+                )
+
+
+def _section(made: type[Case], name: str) -> Any:
+    """The component of a section that is one table, None for others."""
+    hint = typing.get_type_hints(made._method.sections, include_extras=True).get(name)
+    return hint if is_component(hint) else None
