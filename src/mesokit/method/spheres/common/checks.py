@@ -62,17 +62,19 @@ def check_plates(case: Case) -> None:
                 )
 
 
-def _open_falls(case: Case) -> list[str]:
-    """Axes along which gravity pulls and no plates are; none where there are round walls."""
-    if any(not wall.closed_axes for wall in case.walls):
+def open_falls(case: Case, time: float = 0.0) -> list[str]:
+    """Axes along which gravity pulls and no plates are at a time; none where there are other
+    walls."""
+    standing = [wall for wall in case.walls if wall.opens is None or wall.opens > time]
+    if any(not wall.closed_axes for wall in standing):
         return []
-    shut, pulls = closed_axes(case.walls), zip(case.box.axes, case.spheres.gravity, strict=False)
+    shut, pulls = closed_axes(standing), zip(case.box.axes, case.spheres.gravity, strict=False)
     return [axis for axis, g in pulls if g and axis not in shut]
 
 
 def check_floor(case: Case) -> None:
     """Raise CaseError without a wall below: spheres would fall for ever, faster and faster."""
-    gravity, falls = case.spheres.gravity, _open_falls(case)
+    gravity, falls = case.spheres.gravity, open_falls(case)
     if falls and len(falls) == sum(1 for g in gravity if g):
         raise CaseError(
             f"spheres.gravity = {show(list(gravity))}: nothing ends the fall along {falls[0]}; "
@@ -82,7 +84,7 @@ def check_floor(case: Case) -> None:
 
 def warnings_of_falls(case: Case, rough: bool) -> Iterator[str]:
     """Warn of gravity along smooth plates; `rough`: friction may hold the spheres."""
-    for axis in _open_falls(case) if not rough else ():
+    for axis in open_falls(case) if not rough else ():
         yield (
             f"spheres.gravity: nothing holds what falls along {axis}: no wall is there, and "
             "plates and spheres are smooth"

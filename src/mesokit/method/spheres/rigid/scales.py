@@ -11,6 +11,7 @@ OF_FLIGHT = 0.02  # diameters that a grain moves in a step
 OF_SKIN = 0.8  # of the step in which the fastest grain passes the skin
 OF_PERIOD = 0.02  # of the period of a vibration
 FASTEST = 3.0  # thermal velocities, hardly more
+CLOSEST = {2: math.pi / math.sqrt(12), 3: math.pi / math.sqrt(18)}  # packing of equal grains
 
 
 def mean_diameter(case: Case) -> float:

@@ -12,7 +12,7 @@ from mesokit.geometry import walls
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.surface import SurfaceContact
 from mesokit.method.spheres.common import cost
-from mesokit.method.spheres.common.checks import rubs, warnings_of_falls
+from mesokit.method.spheres.common.checks import open_falls, rubs, warnings_of_falls
 from mesokit.method.spheres.common.kinds import ball_volume
 from mesokit.method.spheres.rigid import scales
 from mesokit.processes.cores import usable_cores
@@ -198,6 +198,7 @@ def _warnings(case: Case, numbers: dict[str, Any]) -> Iterator[str]:
     section, law = case.spheres, case.spheres.contact
     yield from warnings_of_falls(case, law.friction > 0 or rubs(case))
     yield from _of_step(case, numbers)
+    yield from _of_walls(case, (case.run.warmup + case.run.steps) * numbers["timestep"])
     solver, yields = section.solver, numbers.get("yields", 0.0)
     if yields > YIELDS:
         yield (
@@ -227,6 +228,33 @@ def _warnings(case: Case, numbers: dict[str, Any]) -> Iterator[str]:
             f"spheres.contact.restitution = {bounces:g}: right for contacts of two; grains that "
             "touch in a chain do not pass a blow on to the last one"
         )
+
+
+def _of_walls(case: Case, end: float) -> Iterator[str]:
+    """Warnings of plates that leave grains no room, and of walls that open above nothing, before
+    the end of the run."""
+    left, moved = [float(length) for length in case.box.size], None
+    for key, surface, wall in walls.surfaces(case):
+        contact = surface.contact
+        if contact is not None and contact.speed != 0:
+            far = min(abs(contact.speed) * end, contact.travel or math.inf)
+            left[case.box.index(wall.axis)] -= math.copysign(far, contact.speed)
+            moved = key if contact.speed > 0 else moved
+    room, d = math.prod(max(length, 0.0) for length in left), case.box.dimension
+    filled = case.spheres.fraction(case.box) * case.box.volume / room if room > 0 else math.inf
+    if moved is not None and filled > scales.CLOSEST[d]:
+        packing = f"a packing fraction of {filled:.2g}" if room > 0 else "none"
+        yield (
+            f"{moved}.contact.speed: plates leave grains too little room at the end of the run, "
+            f"{packing}; expected a smaller {moved}.contact.travel"
+        )
+    for i, wall in enumerate(case.walls):
+        if wall.opens is not None and wall.opens < end:
+            for axis in set(open_falls(case, wall.opens)) - set(open_falls(case)):
+                yield (
+                    f"wall[#{i + 1}].opens = {wall.opens:g}: nothing ends the fall along {axis} "
+                    "afterwards, and the run ends where grains are too fast; expected a wall below"
+                )
 
 
 def _of_step(case: Case, numbers: dict[str, Any]) -> Iterator[str]:

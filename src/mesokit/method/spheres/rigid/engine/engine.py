@@ -12,7 +12,8 @@ from mesokit.errors import RunError
 from mesokit.method.spheres.common.contacts.now import Contacts, in_order
 from mesokit.method.spheres.common.engine import SphereEngine
 from mesokit.method.spheres.common.walls import AXIS, KIND, PLANE, displaced, surfaces_of
-from mesokit.method.spheres.rigid.engine.groups import PER_MASS, SHIFT, SPIN
+from mesokit.method.spheres.rigid.engine.ended import Now, no_room, too_fast
+from mesokit.method.spheres.rigid.engine.groups import PER_MASS, SHIFT, SPEED, SPIN
 from mesokit.method.spheres.rigid.engine.system import RigidSystem
 from mesokit.method.spheres.rigid.scales import timestep_of
 from mesokit.method.spheres.rigid.setup import setup_of
@@ -47,15 +48,27 @@ class RigidEngine(SphereEngine):
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps. Raises RunError for grains too fast for the timestep."""
         began = perf_counter()
-        self.system.run(self.step, steps)
-        self.step += steps
+        done = self.system.run(self.step, steps)
+        self.step += done
         self.seconds["steps"] += perf_counter() - began
+        if done < steps:
+            raise RunError(too_fast(self.case, self._now()))
+
+    def _now(self) -> Now:
+        """What grains and plates do, for the message that ends a run."""
+        volume = self.case.spheres.fraction(self.case.box) * self.case.box.volume
+        pushed = np.zeros(self.surfaces[0])
+        pushed[self.surfaces[1][: len(self.system.plates)]] = self.system.plates[:, SPEED]
+        speeds, room = np.linalg.norm(self.velocities(), axis=1), np.prod(self.room_between_plates)
+        return Now(self.time, speeds, pushed, volume / float(room))
 
     def check(self) -> None:
-        """Raise RunError if a velocity or a place is not finite."""
+        """Raise RunError if a velocity or a place is not finite, or if plates leave no room."""
         bodies = self.system.bodies
         if not (np.isfinite(bodies.motion).all() and np.isfinite(bodies.place).all()):
             raise RunError("velocities are no numbers any more; expected a shorter timestep")
+        if squeezed := no_room(self.case, self._now()):
+            raise RunError(squeezed)
 
     def end_warmup(self) -> None:
         """Set the momentum that walls have taken, and the energy lost, to zero."""
