@@ -10,7 +10,7 @@ from click.shell_completion import ShellComplete
 from mesokit import Case
 from mesokit.cli import main
 from mesokit.cli.commands import cli
-from mesokit.cli.reference import EXAMPLES, KNOWN
+from mesokit.cli.reference import EXAMPLES, KNOWN, STUDIES, TEMPLATES
 
 ROOT = Path(__file__).parents[2]
 CASE = """
@@ -89,6 +89,11 @@ def test_examples_are_templates(name: str, here: Path) -> None:
     stem = name.rpartition("/")[2]
     assert "mesokit run mine.toml" in text and f"mesokit run {stem}" not in text
     assert made.title == Case.from_toml(ROOT / "examples" / f"{name}.toml").title
+
+
+def test_names_are_of_one_case_each() -> None:
+    """`mesokit new` takes templates, examples and studies by name."""
+    assert TEMPLATES and len(KNOWN) == len(TEMPLATES) + len(EXAMPLES) + len(STUDIES)
 
 
 @pytest.mark.parametrize("name", [*EXAMPLES])
