@@ -63,6 +63,11 @@ class SurfaceContact:
         None, doc="of a plate that is pushed (that of all grains unless said)", unit="mass", gt=0
     )
 
+    @property
+    def drives(self) -> bool:
+        """Whether a plate moves along its normal: at a speed, or pushed."""
+        return bool(self.speed or self.force or self.pressure)
+
 
 FASTEST = 1e6  # a surface's speed and rate of rotation: beyond it is a slip of the pen
 

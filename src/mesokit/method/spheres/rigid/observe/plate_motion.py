@@ -25,8 +25,7 @@ def moved_surfaces(case: Case) -> list[int]:
     """Numbers of the surfaces of plates that move along their normal, or are pushed."""
     found = []
     for number, (_, surface, _) in enumerate(walls.surfaces(case)):
-        contact = surface.contact
-        if contact is not None and (contact.speed or contact.force or contact.pressure):
+        if surface.contact is not None and surface.contact.drives:
             found.append(number)
     return found
 

@@ -39,14 +39,15 @@ class SolverResidual(OfSpheres):
 
 @accumulator_of(SolverResidual)
 class SolverResidualAccumulator(Samples):
-    """The three numbers in time, and block averages of sweeps in a step between two samples."""
+    """The three numbers in time, and block averages of sweeps in a step between two samples, of the
+    residual, and of whether a step had all sweeps that are allowed."""
 
     memory: ClassVar[tuple[str, ...]] = ("series", "samples", "blocks", "before")
     width = len(READ)
 
     def prepare(self) -> None:
         super().prepare()
-        self.blocks, self.before = Blocks((2,)), np.full(2, np.nan)
+        self.blocks, self.before = Blocks((3,)), np.full(2, np.nan)
 
     def observe(self, spheres: RigidEngine) -> None:
         solved, now = spheres.solved, np.zeros(2)
@@ -55,7 +56,8 @@ class SolverResidualAccumulator(Samples):
         now[:] = spheres.step, solved.so_far
         if now[0] > self.before[0]:
             sweeps = (now[1] - self.before[1]) / (now[0] - self.before[0])
-            self.blocks.add([sweeps, solved.residual])
+            at_most = float(solved.sweeps >= self.case.spheres.solver.sweeps)
+            self.blocks.add([sweeps, solved.residual, at_most])
         self.before, self.samples = now, self.samples + 1
 
     def result(self) -> Result:
@@ -74,12 +76,10 @@ class SolverResidualAccumulator(Samples):
             return
         if self.blocks.count:
             value, error = self.blocks.mean(), self.blocks.error()
-            most = self.case.spheres.solver.sweeps
-            note = "" if value[0] < most else "all that are allowed: forces are softer than rigid"
             need = theory.packing_sweeps(self.case.particles, self.case.box.dimension, EXACT)
-            note = (
-                note or f"without those of the step before, {need:.2g} settle forces to {EXACT:g}"
-            )
+            note = f"without those of the step before, {need:.2g} settle forces to {EXACT:g}"
             yield Comparison("mean sweeps in a step", value[0], error[0], note=note)
             yield Comparison("mean residual", value[1], error[1])
+            soft = "their forces are softer than rigid" if value[2] > 0 else ""
+            yield Comparison("share of steps with all sweeps", value[2], error[2], note=soft)
         yield Comparison("largest overlap at the end", rows[-1, 2], errors[-1, 2])
