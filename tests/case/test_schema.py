@@ -268,3 +268,25 @@ def test_pair_laws_are_in_one_order_whichever_was_imported_first():
         assert ours() == ordered
     finally:
         family.known = kept
+
+
+@pytest.mark.parametrize(
+    ("word", "paths"),
+    [
+        ("cohesion", ["flock.cohesion", "spheres.contact.cohesion"]),
+        ("sweeps", ["spheres.solver.gauss-seidel.sweeps, spheres.solver.jacobi.sweeps"]),
+        ("order", ["flock.order", "spheres.solver.gauss-seidel.order"]),
+    ],
+)
+def test_keys_are_found_by_name_wherever_they_are(word, paths):
+    assert sorted(found.path for found in explain(word)) == paths
+
+
+def test_keys_of_walls_are_found_by_name():
+    (found,) = explain("travel")
+    assert found.path.startswith("wall.") and found.path.endswith("contact.travel")
+
+
+def test_a_key_of_one_of_three_methods_names_it_once():
+    (found,) = explain("spheres.contact")
+    assert found.meaning.startswith("method 'contact-dynamics': what two")

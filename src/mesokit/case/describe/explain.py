@@ -11,7 +11,8 @@ from mesokit.case.describe.keys import Key, keys_of, parts_of
 from mesokit.errors import CaseError
 
 NEAR = 0.75  # likeness of two words, one of which may be a slip of the pen
-MOST = 4  # paths that an error names
+MANY = 8  # keys of one name that are explained together
+MOST = 4  # paths that are named
 
 
 class Explanation(NamedTuple):
@@ -34,8 +35,8 @@ class Place(NamedTuple):
 def explain(path: str = "") -> list[Explanation]:
     """Meaning of a key or a part of a case, such as "wall.disk" or "fluid.force.acceleration".
 
-    The name of a part alone, such as "wake", is looked for everywhere, any other in the sections,
-    such as "pulls" of [solutes]. Without a path: sections.
+    The name of a part alone, such as "wake", is looked for everywhere, and so is that of a key, such
+    as "pulls" of [solutes]. Without a path: sections.
 
     Raises:
         CaseError: there is no such key; it names the nearest.
@@ -65,8 +66,11 @@ def explain(path: str = "") -> list[Explanation]:
         places.sort(key=lambda place: place.path.count("."), reverse=True)
         places = list({id(place.node): place for place in places}.values())  # where it is nearest
     if not places:
-        sections = _sections(start, definitions)
-        places = [p for section in sections for p in _inside(section, first, definitions)]
+        named = sorted(_named(start, first, definitions), key=lambda place: place.path.count("."))
+        places = list({id(place.node): place for place in reversed(named)}.values())[::-1]
+        keys = [place.key for place in places if place.key is not None]
+        if len({key.meaning for key in keys}) > MANY or any(key.tag for key in keys):
+            places = []
     if not places:
         raise _unknown(path, first, start, definitions)
     for word in rest:
@@ -78,7 +82,11 @@ def explain(path: str = "") -> list[Explanation]:
     for place in places:
         where, *said = _explained(place, definitions)
         paths.setdefault((said[0], tuple(said[1])), []).append(where)
-    return [Explanation(", ".join(where), *said) for said, where in paths.items()]
+    return [Explanation(_listed(where), *said) for said, where in paths.items()]
+
+
+def _listed(paths: Sequence[str]) -> str:
+    return ", ".join([*paths[:MOST], *(["..."] if len(paths) > MOST else [])])
 
 
 def _sections(start: Place, definitions: Any) -> list[Place]:
@@ -104,6 +112,19 @@ def _inside(place: Place, word: str, definitions: Any) -> Iterator[Place]:
                 parts = parts_of(node, definitions)
                 inner = ".".join([*filter(None, path), word])
                 yield Place(inner, node, parts[1] if parts else {}, key)
+
+
+def _named(place: Place, word: str, definitions: Any, deep: int = 5) -> Iterator[Place]:
+    """All keys of that name below a place."""
+    several = len(place.tables) > 1
+    for name, table in place.tables.items() if deep else ():
+        path = ".".join(filter(None, [place.path, name if several else ""]))
+        here = Place(path, table, {"": table})
+        for key in table["properties"]:
+            for inner in _inside(here, key, definitions):
+                yield from _named(inner, word, definitions, deep - 1)
+        if word in table["properties"]:
+            yield from _inside(here, word, definitions)
 
 
 def _everywhere(place: Place, definitions: Any, deep: int = 4) -> Iterator[Place]:

@@ -95,6 +95,9 @@ def _any_of_both(
                     }
             else:
                 words = inner.get("description", "")
+                if words.startswith("method '"):  # of a table that has been joined with another
+                    joint[inside] = inner
+                    continue
                 joint[inside] = {**inner, "description": f"method '{name}': {words}"}
     title, names = key.capitalize(), " and ".join(f"'{name}'" for name in both)
     about = f"Of the methods {names}. Keys of one alone say so."
