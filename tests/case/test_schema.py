@@ -193,7 +193,9 @@ def test_a_new_case_names_the_schema_beside_it(
 
 
 def test_a_key_of_a_section_is_found_by_its_name_alone() -> None:
-    (found,) = mesokit.explain("pulls")
+    found, *damped = mesokit.explain("pulls")  # of beads, and of dashpots
+    pairs = ["spheres.pair.hertz.pulls", "spheres.pair.spring-dashpot.pulls"]
+    assert sorted(one.path for one in damped) == pairs
     assert found.path == "solutes.pulls"
     assert "bead" in {key.name for key in found.keys}
     assert mesokit.explain("open")[0].path == "box.open"
@@ -279,14 +281,14 @@ def test_pair_laws_are_in_one_order_whichever_was_imported_first():
     ],
 )
 def test_keys_are_found_by_name_wherever_they_are(word, paths):
-    assert sorted(found.path for found in explain(word)) == paths
+    assert sorted(found.path for found in mesokit.explain(word)) == paths
 
 
 def test_keys_of_walls_are_found_by_name():
-    (found,) = explain("travel")
+    (found,) = mesokit.explain("travel")
     assert found.path.startswith("wall.") and found.path.endswith("contact.travel")
 
 
 def test_a_key_of_one_of_three_methods_names_it_once():
-    (found,) = explain("spheres.contact")
+    (found,) = mesokit.explain("spheres.contact")
     assert found.meaning.startswith("method 'contact-dynamics': what two")

@@ -35,8 +35,8 @@ class Place(NamedTuple):
 def explain(path: str = "") -> list[Explanation]:
     """Meaning of a key or a part of a case, such as "wall.disk" or "fluid.force.acceleration".
 
-    The name of a part alone, such as "wake", is looked for everywhere, and so is that of a key, such
-    as "pulls" of [solutes]. Without a path: sections.
+    The name of a part alone, such as "wake", is looked for everywhere, and so is that of a key,
+    such as "pulls" of [solutes]. Without a path: sections.
 
     Raises:
         CaseError: there is no such key; it names the nearest.
