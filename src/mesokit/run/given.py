@@ -41,11 +41,14 @@ def case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, 
     return given or Case(**parts), {k: array for k, array in arrays.items() if array is not None}
 
 
-def threads_of(given: Any, here: World) -> int:
-    """The given number, or one for each core; ranks on the same cores share them."""
+def threads_of(given: Any, here: World, case: Case) -> int:
+    """The given number, or one for each core that makes the case faster; ranks on the same cores
+    share them."""
     if given is None:
         own = platform.node(), which_cores()
-        return max(1, usable_cores() // here.gathered(own).count(own))
+        cores = max(1, usable_cores() // here.gathered(own).count(own))
+        most = method_of(case).most_threads
+        return cores if most is None else min(cores, most(case))
     whole = isinstance(given, numbers.Integral) and not isinstance(given, bool)
     if whole and 1 <= int(given) <= MOST_THREADS:
         return int(given)

@@ -81,7 +81,7 @@ class Simulation(Shown):
         self.ranks = world()
         self.callbacks = Callbacks(callbacks)
         self.case, arrays = case_and_arrays(case, parts)
-        self.threads = threads_of(threads, self.ranks)
+        self.threads = threads_of(threads, self.ranks, self.case)
         facts = {"output": str(output)}
         self.ranks.require_same(lambda: given_facts(self.case, self.callbacks, arrays) | facts)
         with blaming(self.case):
@@ -141,7 +141,7 @@ class Simulation(Shown):
             directory = here.on_root(lambda: existing(output, held))
             self = cls.__new__(cls)
             self.ranks, self.case = here, Case.from_toml(directory.case_file)
-            self.threads = threads_of(threads, here)
+            self.threads = threads_of(threads, here, self.case)
             self.callbacks = Callbacks(callbacks)
             given = {"steps": str(steps)}
             here.require_same(lambda: given_facts(self.case, self.callbacks, {}) | given)

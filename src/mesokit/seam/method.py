@@ -220,6 +220,8 @@ class Method:
         The time after which nothing can happen any more, None while something can.
     units : Units, optional
         What lengths, times and masses are counted in; unless said, the unit of the case.
+    most_threads : function of a case, optional
+        The number of threads beyond which another one gains nothing; a run has no more unless said.
     check_ranks : function of a case and a number of ranks, optional
         Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
         can. All ranks then call its engine at once.
@@ -245,6 +247,7 @@ class Method:
     steadiness: Steadiness = STEADY
     absorbed: Callable[[Any], float | None] = lambda engine: None
     units: Units = Units()  # noqa: RUF009  a tuple of names
+    most_threads: Callable[[Case], int] | None = None
     check_ranks: Callable[[Case, int], None] | None = None
 
 

@@ -10,7 +10,7 @@ from mesokit.method.spheres.rigid.first_overlaps import with_start
 from mesokit.method.spheres.rigid.observe import MeanSquareDisplacement
 from mesokit.method.spheres.rigid.scales import timestep_of
 from mesokit.method.spheres.rigid.section import RigidSections
-from mesokit.method.spheres.rigid.summary import rigid_summary
+from mesokit.method.spheres.rigid.summary import most_threads, rigid_summary
 
 ENERGIES = ("translation", "rotation", "potential", "contact")
 METHOD = sphere_method(
@@ -24,6 +24,7 @@ METHOD = sphere_method(
     check=check_rigid,
     timestep=timestep_of,
     summary=rigid_summary,
+    most_threads=most_threads,
     box=("shear_rate", "shear_frequency", "shear"),
     log=log_columns(*ENERGIES, usual=("translation", "potential")),
 )

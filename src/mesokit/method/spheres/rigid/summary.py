@@ -38,14 +38,19 @@ def rigid_summary(case: Case, threads: int | None = None) -> Summary:
     rows += _contacts(case, numbers)
     in_step = _seconds_of_step(case, steps, numbers)
     cores = usable_cores() if threads is None else threads
-    most = max(case.particles // FEWEST, 1) if section.solver.shared else 1
-    used = min(cores, most)
+    used = min(cores, most_threads(case))
     numbers["seconds"] = steps * in_step / used
     why = "few grains" if section.solver.shared else "contacts have one order"
-    few = f", no faster than {used}: {why}" if used < cores else ""
-    note = f"estimate: {cores} thread{'s' * (cores > 1)}{few}"
+    count, said = (used, "") if threads is None else (cores, f", no faster than {used}")
+    few = f"{said}: {why}" if used < cores else ""
+    note = f"estimate: {count} thread{'s' * (count > 1)}{few}"
     beside = list(_beside(case, steps, in_step, numbers))
     return cost.summary_of(case, rows, beside, numbers, note, _warnings(case, numbers))
+
+
+def most_threads(case: Case) -> int:
+    """The number of threads beyond which another one gains nothing."""
+    return max(case.particles // FEWEST, 1) if case.spheres.solver.shared else 1
 
 
 def _seconds_of_step(case: Case, steps: int, numbers: dict[str, Any]) -> float:
