@@ -100,8 +100,10 @@ def fingerprint(case: Any, threads: int) -> tuple[str, str]:
 
 
 def state(simulation: Any) -> list[np.ndarray]:
-    """Positions and velocities of all particles and beads."""
+    """Positions and velocities of all particles and beads, or the sites of a lattice."""
     engine = simulation.engine
+    if hasattr(engine, "sites"):
+        return [engine.sites()]
     if not hasattr(engine, "whole_positions"):  # a method whose particles have no velocities
         return [engine.positions(unwrapped=True)]
     arrays = [engine.whole_positions(), engine.velocities()]
