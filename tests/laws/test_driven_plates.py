@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from mesokit import Plates, RandomStart, Rectangle, SphereKind, Surface, SurfaceContact
+from mesokit import Disk, Plates, RandomStart, Rectangle, SphereKind, Surface, SurfaceContact
 from tests.helpers.rigid_grains import at_rest, energy, exact, rigid, same
 from tests.helpers.soft_spheres import ROUGH, soft
 
@@ -26,11 +26,12 @@ def column(n=3, walls=None, **given):
     )  # fmt: skip
 
 
-def test_a_plate_that_nothing_stops_is_accelerated_by_its_force():
-    engine = column(1, [plates(upper={"force": 3.0, "mass": 2.0})])
+@pytest.mark.parametrize(("given", "mass"), [({"mass": 2.0}, 2.0), ({}, 3.0)])
+def test_a_plate_that_nothing_stops_is_accelerated_by_its_force(given, mass):
+    engine = column(3, [plates(upper={"force": 3.0, **given})])  # or the mass of all grains
     engine.advance(100)
     # v grows by F dt/M in a step, and places follow the new velocity
-    assert engine.plate_shifts[1] == pytest.approx(1.5 * 0.01**2 * 100 * 101 / 2, rel=1e-12)
+    assert engine.plate_shifts[1] == pytest.approx(3 / mass * 0.01**2 * 100 * 101 / 2, rel=1e-12)
     assert engine.plate_shifts[0] == 0
 
 
@@ -81,14 +82,44 @@ def test_a_plate_moves_at_its_speed_as_far_as_it_is_told():
     assert engine.velocities()[0] == pytest.approx([0, 0.5], abs=1e-12)  # it flies on
 
 
+METHODS = {
+    "rigid": (rigid, {"timestep": 0.005, "solver": exact()}),
+    "soft": (soft, {"number": 1, "start": RandomStart(), "pair": ROUGH}),
+}
+
+
+def one_grain(method, walls, place):
+    """A grain at a place under gravity."""
+    make, given = METHODS[method]
+    return make([8, 10], walls=walls, given=at_rest([place]), gravity=[0.0, -G], **given)
+
+
 def test_soft_spheres_are_moved_by_plates_as_well():
-    walls = [plates(lower={"speed": 0.5, "travel": 2.0})]
-    engine = soft(
-        [8, 10], walls=walls, given=at_rest([[4.0, 0.5]]), number=1, start=RandomStart(),
-        pair=ROUGH, gravity=[0.0, -G],
-    )  # fmt: skip
+    engine = one_grain("soft", [plates(lower={"speed": 0.5, "travel": 2.0})], [4.0, 0.5])
     engine.advance(round(12.0 / engine.timestep))
     assert engine.positions()[0, 1] == pytest.approx(2.5, abs=0.02)
+
+
+@pytest.mark.parametrize("method", ["rigid", "soft"])
+@pytest.mark.parametrize(("speed", "travel"), [(0.5, 2.0), (-0.5, 0.4)])
+def test_a_plate_that_has_moved_its_way_is_a_plate_at_rest(method, speed, travel):
+    heights = []
+    for lower in (None, {"speed": speed, "travel": travel}):
+        engine = one_grain(method, [plates(lower=lower)], [4.0, 0.5])
+        engine.advance(round(12.0 / engine.timestep))
+        assert engine.velocities()[0] == pytest.approx([0, 0], abs=1e-9)
+        heights.append(engine.positions()[0, 1])
+    moved = math.copysign(travel, speed)  # into the box, or out of it
+    assert heights[1] - heights[0] == pytest.approx(moved, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", ["rigid", "soft"])
+def test_a_grain_falls_when_the_disk_below_it_is_taken_away(method):
+    disk = Disk([4, 3], 1.0, opens=1.0)
+    engine = one_grain(method, [disk, Plates("y")], [4.0, 4.5])
+    for time, height in ((1.0, 4.5), (2.0, 4.0)):
+        engine.advance(round(time / engine.timestep) - engine.step)
+        assert engine.positions()[0] == pytest.approx([4.0, height], abs=2e-2)
 
 
 def on_a_plug(make, opens=1.0, **given):

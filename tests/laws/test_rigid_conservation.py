@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from mesokit import Plates, RandomStart, SphereKind, Surface
+from mesokit import Plates, RandomStart, SphereKind, Surface, SurfaceContact
+from mesokit.method.spheres.rigid.engine.groups import SPEED
 from mesokit.method.spheres.rigid.solver.gauss_seidel import GaussSeidel
 from tests.helpers.rigid_grains import (
     at_rest,
@@ -17,17 +18,21 @@ from tests.helpers.rigid_grains import (
 
 MIXED = [SphereKind(1.0, spread=0.2)]
 ALL = {"friction": 0.4, "restitution": 0.5, "rolling": 0.05}
+STICKY = ALL | {"cohesion": {"force": 0.3, "range": 0.02}}
 BRIEF = GaussSeidel(sweeps=20)  # books do not ask for good forces
 
 
-def poured(dimension, belt=0.0, number=60, contact=ALL, **given):
-    """Grains that fall on a floor, which may move along x."""
-    lower = Surface(velocity=[belt] + [0.0] * (dimension - 1))
+def poured(dimension, belt=0.0, number=60, contact=ALL, floor=None, roof=None, **given):
+    """Grains that fall on a floor, which may move along x; floor, roof: how the plates move."""
+    velocity = [belt] + [0.0] * (dimension - 1)
+    lower = Surface(velocity=velocity, contact=None if floor is None else SurfaceContact(**floor))
+    upper = Surface(contact=None if roof is None else SurfaceContact(**roof))
     size = [9.0, 24.0] if dimension == 2 else [6.0, 6.0, 9.0]
     given = {"kT": 0.5, "timestep": 0.01, "solver": BRIEF, **given}
     return rigid(
-        size, walls=[Plates("xyz"[dimension - 1], lower=lower)], number=number, kinds=MIXED,
-        gravity=[0.0] * (dimension - 1) + [-1.0], start=RandomStart(), contact=contact, **given,
+        size, walls=[Plates("xyz"[dimension - 1], lower=lower, upper=upper)], number=number,
+        kinds=MIXED, gravity=[0.0] * (dimension - 1) + [-1.0], start=RandomStart(),
+        contact=contact, **given,
     )  # fmt: skip
 
 
@@ -50,6 +55,41 @@ def test_energy_is_kinetic_potential_or_lost(dimension, belt):
     lost = engine.lost
     assert min(lost.values()) > 1e-3 * first
     assert lost["impact"] > 0.2 * first
+
+
+MOVES = {
+    "none": {},
+    "belt": {"belt": 0.7},
+    "shaken": {"floor": {"amplitude": 0.1, "frequency": 9.0, "friction": 0.2}},
+    "closing": {"roof": {"speed": 1.5, "travel": 4.0}},
+    "pushed": {"roof": {"force": 30.0, "mass": 7.0}},
+}
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("moves", list(MOVES))
+def test_walls_take_the_weight_times_the_time_less_what_grains_gain(dimension, moves):
+    engine = poured(dimension, contact=STICKY, **MOVES[moves])
+    first, weight = engine.totals()[1], engine.masses().sum()
+    down = -np.eye(dimension)[-1]
+    gained, touched = [], 1 + int("roof" in MOVES[moves])
+    for _ in range(10):
+        engine.advance(40)
+        given = weight * engine.time
+        gained.append(engine.totals()[1] - first)
+        left = engine.wall_impulse.sum(axis=0) + gained[-1] - given * down
+        assert np.abs(left).max() < 1e-10 * given
+    assert np.abs(gained).max() > 0.1 * weight  # they are on their way
+    assert np.abs(engine.wall_impulse[:touched, -1]).min() > 0.02 * given
+
+
+def test_a_pushed_plate_gains_what_its_force_gives_it_and_grains():
+    engine = poured(2, contact=STICKY, **MOVES["pushed"])
+    for _ in range(10):
+        engine.advance(40)
+        taken, speed = engine.wall_impulse[1, 1], engine.system.plates[1, SPEED]
+        assert 7.0 * speed == pytest.approx(30.0 * engine.time - taken, abs=1e-9 * engine.time)
+    assert taken > 0.1 * 30.0 * engine.time
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

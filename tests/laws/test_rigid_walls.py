@@ -12,6 +12,7 @@ from mesokit import (
     PouredStart,
     RandomStart,
     Rectangle,
+    SphereKind,
     Surface,
     SurfaceContact,
     Union,
@@ -245,3 +246,55 @@ def test_grains_are_poured_on_a_solid():
     before = engine.positions(unwrapped=True)
     engine.advance(500)
     assert np.abs(engine.positions(unwrapped=True) - before).max() < 0.5
+
+
+def silo(opens):
+    """Spheres in a bin; a plug of 3 by 3 in its floor, at a height of 3, is taken away."""
+    around = [([2.5, y, 2.5], [7, 2, 1]) for y in (0, 5)]
+    around += [([x, 2.5, 2.5], [2, 3, 1]) for x in (0, 5)]
+    floor = [Cuboid(centre=centre, size=size) for centre, size in around]
+    plug = Cuboid(centre=[2.5, 2.5, 2.5], size=[3, 3, 1], opens=opens)
+    places = np.array([0.65, 0.65, 3.65]) + 1.23 * np.indices((4, 4, 3)).reshape(3, -1).T
+    velocities = np.random.default_rng(4).normal(size=places.shape)
+    return rigid(
+        [5, 5, 12], walls=[*floor, plug, *map(Plates, "xyz")], gravity=[0.0, 0.0, -G],
+        kinds=[SphereKind(1.0, spread=0.1)], given=at_rest(places, velocities=velocities),
+        contact={"friction": 0.4, "rolling": 0.2}, timestep=0.01,
+        solver=GaussSeidel(sweeps=100, tolerance=1e-8),
+    )  # fmt: skip
+
+
+@pytest.mark.long
+def test_a_silo_in_space_bears_its_filling_until_its_floor_is_opened():
+    engine = silo(opens=14.5)
+    weight = G * engine.masses().sum()
+    engine.advance(1350)
+    before = engine.wall_impulse
+    engine.advance(50)
+    force = (engine.wall_impulse - before) / (50 * engine.timestep) / weight
+    # floor, plug and sides bear the weight; all push the filling together
+    assert force.sum(axis=0) == pytest.approx([0.0, 0.0, -1.0], abs=1e-6)
+    assert force[:5, 2].max() < -0.01
+    assert (force[[5, 6, 7, 8], [0, 0, 1, 1]] * [-1, 1, -1, 1]).min() > 0.05
+    found = engine.contacts()
+    assert found.forces[found.at_walls].sum(axis=0) == pytest.approx([0, 0, weight], abs=1e-6)
+    drags = found.tangential_forces / found.normal_forces
+    assert found.normal_forces.min() > 0
+    assert drags.max() == pytest.approx(0.4, rel=1e-6)  # some slid until they came to rest
+    assert engine.positions()[:, 2].min() > 3.4
+    # then grains leave by the hole, and only there; the plug is nothing to them
+    engine.advance(50)
+    taken, at_rest_before, passing = engine.wall_impulse, engine.totals()[1], []
+    for _ in range(50):
+        engine.advance(10)
+        places = engine.positions()
+        within = (places[:, 2] > 2) & (places[:, 2] < 3)
+        beside = np.abs(places[:, :2] - 2.5).max(axis=1) + 0.5 * engine.diameters()
+        passing += list(beside[within])
+    assert len(passing) > 20
+    assert max(passing) < 1.5 + 1e-3
+    assert 8 < (places[:, 2] < 2).sum() < 40
+    after = engine.wall_impulse - taken
+    assert not after[4].any()
+    left = after.sum(axis=0) + engine.totals()[1] - at_rest_before
+    assert left == pytest.approx([0, 0, -weight * 5.0], abs=1e-10 * weight * 5.0)

@@ -249,6 +249,43 @@ def test_a_floor_bears_its_share_of_the_weight(gravity):
     assert result.value[10] == pytest.approx(0.7) and np.isnan(result.value[:10]).all()
 
 
+NOTES = {
+    "law": "Janssen, with a stress ratio of 0.4",
+    "pressed": "press the filling",
+    "still": "of one filling",
+}
+
+
+@pytest.mark.parametrize(
+    ("given", "load", "swing", "walls", "said"),
+    [
+        ({}, 0.7, 0.1, "xy", []),
+        ({"friction": 0.5, "ratio": 0.4}, 0.7, 0.1, "xy", ["law"]),
+        ({}, 0.7, 0.0, "xy", ["still"]),
+        ({}, 1.2, 0.1, "xy", ["pressed"]),
+        ({}, 1.01, 0.1, "xy", []),  # more by chance
+        ({}, 1 + 1e-9, 0.0, "xy", ["still"]),  # and by what a solver leaves
+        ({}, 1.2, 0.1, "y", []),  # there are no sides
+        ({"friction": 0.5, "ratio": 0.4}, 1.2, 0.0, "xy", ["law", "pressed", "still"]),
+    ],
+)
+def test_a_load_has_the_caveats_that_hold_of_it(given, load, swing, walls, said):
+    observable = WallLoad(**given)
+    case = hard([observable], number=50, size=(9, 20), **FALL | {"walls": [*map(Plates, walls)]})
+    spheres = Placed(case, lambda time: column(case, 5, 10), np.zeros((2 * len(walls), 2)))
+    accumulator = observable.accumulator(case)
+    drawn = np.random.default_rng(7).normal(size=40)
+    loads = load + swing * (drawn - drawn.mean())
+    for impulse in np.cumsum(loads) * spheres.masses().sum():
+        accumulator.observe(spheres)
+        spheres.advance(1)
+        spheres.wall_impulse[-2, 1] = -impulse
+    accumulator.observe(spheres)
+    note = by_name(accumulator.result())["load on the floor over the weight"].note
+    assert [key for key, words in NOTES.items() if words in note] == said
+    assert bool(note) == bool(said)
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_plates_give_stress_ratio_and_inertial_number(sign):
     observable = ShearRheology(margin=1.0)

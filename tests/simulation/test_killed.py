@@ -64,6 +64,31 @@ axis = "y"
 quantity = "mean-square-displacement"
 every = 50
 """,
+    "contact-dynamics": """
+[run]
+steps = 1500
+[box]
+size = [15, 16]
+[spheres]
+number = 150
+gravity = [0, -1]
+timestep = 0.01
+[spheres.contact]
+friction = 0.5
+rolling = 0.1
+cohesion = { force = 0.2, range = 0.02 }
+[spheres.solver]
+rule = "gauss-seidel"
+order = "random"
+sweeps = 20
+[[wall]]
+shape = "plates"
+axis = "y"
+upper = { contact = { pressure = 0.5 } }
+[[observe]]
+quantity = "plate-motion"
+every = 50
+""",
     "flock": """
 [run]
 steps = 6000
@@ -79,7 +104,7 @@ radius = 3
 quantity = "polar-order"
 """,
 }
-FIELDS = {"soft-spheres": '["position", "contact"]'}  # of trajectories; positions unless said
+CONTACTS = dict.fromkeys(("soft-spheres", "contact-dynamics"), '["position", "contact"]')
 LONG = ["--set", f"run.steps={STEPS}", "--set", "run.checkpoint_every=100"]
 SOURCE = str(Path(mesokit.__file__).parent.parent)
 
@@ -168,7 +193,7 @@ def test_other_methods_killed(method, tmp_path):
     case_file, checkpoint = tmp_path / "case.toml", tmp_path / "killed" / "checkpoint.npz"
     case_file.write_text(SIBLINGS[method])
     often = ["--set", f"run.method={method}", "--set", "run.checkpoint_every=50"]
-    fields = FIELDS.get(method, '["position"]')
+    fields = CONTACTS.get(method, '["position"]')  # of trajectories
     often += ["--set", f"trajectory.fields={fields}"]
     start = ["run", case_file, *often, "--set", "trajectory.every=200", "--output"]
     process = mesokit_process(*start, tmp_path / "whole")
