@@ -37,7 +37,8 @@ def collect(law, step, time, world, rows):
     bodies, lists, c = world.bodies, world.lists, 0
     for i in range(len(bodies.number)):
         for s in range(lists.own[i]):
-            slot, one, other, sign = lists.begin[i] + s, i, np.int64(lists.near[i, s]), 1.0
+            slot, sign = lists.begin[i] + s, 1.0
+            one, other = np.int64(i), np.int64(lists.near[i, s])
             if bodies.number[other] < bodies.number[one]:  # places have the same bits either way
                 one, other, sign = other, one, -1.0
             r, reached = row(bodies.place, one), reach(bodies, one)
