@@ -152,6 +152,9 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "sheared beside a disk": (
         {**SHEAR, WALL: DISK, "number = 30": 'number = 30\nstart = { rule = "random" }'},
         ("box.shear_rate = 0.1: not with wall[#1].shape = 'disk'",)),
+    "place on a line": (
+        {**FREE, WALL: DISK.replace("[5, 5]", "[5, 5, 5]")},
+        ("wall[#1].centre = [5, 5, 5]: expected 2 numbers, one for each axis of the 2D box",)),
     "sheared and falling": ({**SHEAR, "gravity = [0, -1]": "gravity = [0, -1]"},
                             ("box.shear_rate = 0.1: not with spheres.gravity = [0, -1]",
                              "repeats along y")),

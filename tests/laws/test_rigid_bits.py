@@ -50,6 +50,14 @@ def sheared(threads=1, skin=None, **_):
     )  # fmt: skip
 
 
+def assert_same_contacts(one, other):
+    """Fail unless the contacts of two engines have the same bits."""
+    first, second = one.contacts(), other.contacts()
+    assert len(first.pairs) > 10
+    for a, b in zip(first, second, strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
 SYSTEMS = {
     "2D": bed, "3D": lambda **given: bed(3, **given), "solids": among_solids, "sheared": sheared,
 }  # fmt: skip
@@ -84,6 +92,7 @@ def test_a_run_goes_on_from_any_step_to_the_same_bits(system):
         again.restore({name: array.copy() for name, array in state.items()})
         again.advance(sum(parts[k:]))
         assert same(again, whole)
+        assert_same_contacts(again, whole)
         assert again.lost == whole.lost
         np.testing.assert_array_equal(again.wall_impulse, whole.wall_impulse)
 
@@ -96,6 +105,7 @@ def test_how_far_lists_go_changes_no_bit(system):
         other = SYSTEMS[system](skin=skin)
         other.advance(150)
         assert same(usual, other)
+        assert_same_contacts(usual, other)
 
 
 def test_a_random_order_is_one_of_the_seed():

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from mesokit import Plates
+from mesokit import Plates, RandomStart, SphereKind
 from tests.helpers.rigid_grains import at_rest, exact, rigid
 
 G = 1.0
@@ -99,3 +99,20 @@ def test_grains_beyond_the_range_do_not_pull():
     )  # fmt: skip
     engine.advance(100)
     assert not engine.velocities().any()
+
+
+def test_contacts_of_a_packing_hold_its_weight_with_those_that_only_pull():
+    engine = rigid(
+        [8, 16], walls=[Plates("x"), Plates("y")], number=40, kinds=[SphereKind(1.0, spread=0.2)],
+        gravity=[0.0, -G], start=RandomStart(), timestep=0.01, solver=exact(tolerance=1e-9),
+        contact={"friction": 0.5, "cohesion": {"force": 1.0, "range": 0.01}},
+    )  # fmt: skip
+    engine.advance(2000)
+    assert np.abs(engine.velocities()).max() < 1e-6
+    found = engine.contacts()
+    total = engine.made.masses[:, None] * np.array([0.0, -G])
+    np.add.at(total, found.pairs[:, 0], found.forces)
+    pairs = ~found.at_walls
+    np.add.at(total, found.pairs[pairs, 1], -found.forces[pairs])
+    assert np.abs(total).max() < 1e-4
+    assert (found.gaps[pairs] > 1e-5).sum() > 2  # pulled over a gap, and held apart by others

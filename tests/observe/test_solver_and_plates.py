@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,10 +11,12 @@ import pytest
 from mesokit import (
     Box,
     Case,
+    EnergyBudget,
     PackingFraction,
     PlateMotion,
     Plates,
     Run,
+    RunError,
     Simulation,
     SolverResidual,
     Surface,
@@ -26,9 +29,9 @@ from tests.helpers.rigid_grains import rigid
 CLOSING = Surface(contact=SurfaceContact(speed=0.2, travel=1.0))
 
 
-def case_of(*observe, **walls):
-    """Thirty disks between plates across y."""
-    engine = rigid((8, 12), [Plates("y", **walls)], number=30, timestep=0.01)
+def case_of(*observe, number=30, **walls):
+    """Disks between plates across y."""
+    engine = rigid((8, 12), [Plates("y", **walls)], number=number, timestep=0.01)
     section, walls = engine.case.spheres, engine.case.walls
     run = Run(1000, method="contact-dynamics")
     return Case(run=run, box=Box((8, 12)), spheres=section, walls=walls, observe=list(observe))
@@ -75,6 +78,23 @@ def test_a_plate_moves_its_travel_and_the_packing_is_that_of_the_room_left():
     box = filled["packing fraction of the box"]
     assert box.measured == pytest.approx(room, rel=1e-12) and box.error == 0
     assert "plate-motion" in box.note
+
+
+def test_plates_that_meet_end_the_run_in_a_line():
+    meeting = Surface(contact=SurfaceContact(speed=1.2))  # after 10 along 12: the whole way
+    with pytest.raises(
+        RunError, match=r"too little room at a time of 10, none; expected a smaller"
+    ):
+        ran(case_of(PlateMotion(every=100), number=1, upper=meeting))
+
+
+def test_no_books_of_energy_are_expected_to_close_in_a_sheared_box():
+    given, budget = case_of(), EnergyBudget()
+    notes = [
+        budget.accumulator(replace(given, walls=[], box=box)).work()
+        for box in (Box((8, 12)), Box((8, 12), shear_rate=0.1))
+    ]
+    assert notes == ["", "less the work of the shear of the box"]
 
 
 def test_plates_at_rest_have_no_note():

@@ -152,6 +152,12 @@ def _shapes(case: Case) -> Iterator[str]:
             usable = [shape for shape in SHAPES if d in getattr(shape, "dimensions", ())]
             known = [found[1] for shape in usable if (found := tag_of(shape))]
             yield f"{key}.shape = {show(name_of(wall))}: not in {d}D; expected {one_of(known)}"
+        for name, vector in wall.vectors().items():
+            if len(vector) != d:
+                yield (
+                    f"{key}.{name} = {show(vector)}: expected {d} numbers, one for each axis of "
+                    f"the {d}D box"
+                )
         for axis in wall.closed_axes:
             if axis not in case.box.axes:
                 yield f"{key}.axis = {show(axis)}: a 2D box has only 'x' and 'y'"

@@ -72,9 +72,6 @@ def check_mean_free_path(case: Case) -> Iterator[str]:
 def vectors(case: Case) -> Iterator[str]:
     """One number for each axis."""
     given = [(f"fluid.force.{key}", vector) for key, vector in case.fluid.force.vectors().items()]
-    for i, wall in enumerate(case.walls):
-        if case.box.dimension in wall.dimensions:
-            given += [(f"wall[#{i + 1}].{key}", vector) for key, vector in wall.vectors().items()]
     given += [
         (f"{key}.velocity", s.velocity) for key, s, _ in surfaces(case) if s.velocity is not None
     ]

@@ -90,7 +90,7 @@ class EnergyBudgetAccumulator(Samples):
             yield Comparison(what, self.books / self.first, 0.0, 1.0)
 
     def work(self) -> str:
-        """A note if walls or a bath do work, which no method counts."""
+        """A note if walls, shear or a bath do work, which no method counts."""
         case, section = self.case, self.case.spheres
         surfaces = [surface for _, surface, _ in walls.surfaces(case)]
         contacts = [surface.contact for surface in surfaces if surface.contact is not None]
@@ -99,6 +99,8 @@ class EnergyBudgetAccumulator(Samples):
         moves |= any(c.speed or c.force or c.pressure for c in contacts)
         if moves or any(surface.rule == "diffuse" for surface in surfaces):
             return "less the work of walls"
+        if case.box.sheared:
+            return "less the work of the shear of the box"
         heated = section.energy_source is not None or section.thermostatted
         return "less the work of a bath" if heated else ""
 

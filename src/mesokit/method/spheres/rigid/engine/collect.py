@@ -1,6 +1,9 @@
 """A row for each contact with a force, as observables and trajectories take them."""
 
+import math
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.solids.bodies import NO_TERM
@@ -29,25 +32,26 @@ class Rows(NamedTuple):
 
 @kernel
 def collect(law, step, time, world, rows):
-    """Write all contacts that had an impulse in the last step; places and normals are those of
-    now."""
+    """Write all contacts that had an impulse in the last step, or that pull; places and normals are
+    those of now."""
     bodies, lists, c = world.bodies, world.lists, 0
     for i in range(len(bodies.number)):
-        r, reached = row(bodies.place, i), reach(bodies, i)
         for s in range(lists.own[i]):
-            slot = lists.begin[i] + s
-            if remembers(lists.springs, slot):
-                j = lists.near[i, s]
-                separation = from_to(world.box, bodies.place, j, r)
-                distance = dot(separation, separation) ** 0.5
+            slot, sign = lists.begin[i] + s, 1.0
+            one, other = np.int64(i), np.int64(lists.near[i, s])
+            if bodies.number[other] < bodies.number[one]:  # places have the same bits either way
+                one, other, sign = other, one, -1.0
+            r, reached = row(bodies.place, one), reach(bodies, one)
+            separation = from_to(world.box, bodies.place, other, r)
+            distance = math.sqrt(dot(separation, separation))
+            gap = distance - (reached + reach(bodies, other))
+            if acts(law, lists.springs, slot, gap):
                 normal = scaled(1.0 / distance, separation)
-                gap, sign = distance - reached - reach(bodies, j), 1.0
-                one, other = bodies.number[i], bodies.number[j]
-                force = force_of(law, step, lists.springs, slot, normal, gap)
+                force = force_of(law, step, lists.springs, slot, sign, normal, gap)
                 place = added_scaled(r, -(reached + 0.5 * gap), normal)
-                if other < one:
-                    one, other, sign = other, one, -1.0
-                c = fill(rows, c, one, other, scaled(sign, normal), scaled(sign, force), place, gap)
+                c = fill(
+                    rows, c, bodies.number[one], bodies.number[other], normal, force, place, gap
+                )
         c = collect_walls(law, step, time, i, world, rows, c)
         c = collect_beside(world.walls.solid, law, step, time, i, world, rows, c)
 
@@ -87,9 +91,16 @@ def _(solid, time, r, reached):
 
 
 @scalar
-def force_of(law, step, springs, slot, normal, gap):
-    """The force of a contact, the pull of cohesion included."""
-    whole = scaled(1.0 / step, entries(springs, slot, 0, ZERO))
+def acts(law, springs, slot, gap):
+    """Whether a contact had an impulse in the last step, or its surfaces pull one another."""
+    return remembers(springs, slot) or pull(law.pull, law.within, gap, 1.0) > 0.0
+
+
+@scalar
+def force_of(law, step, springs, slot, sign, normal, gap):
+    """The force of a contact, the pull of cohesion included; sign: 1 if the impulse is on the first
+    of the two, else -1."""
+    whole = scaled(sign / step, entries(springs, slot, 0, ZERO))
     return added_scaled(whole, -pull(law.pull, law.within, gap, 1.0), normal)
 
 
@@ -111,12 +122,12 @@ def collect_walls(law, step, time, i, world, rows, c):
     r, reached = row(bodies.place, i), reach(bodies, i)
     for w in range(len(walls.rows)):
         slot = i * len(walls.rows) + w
-        if remembers(walls.springs, slot):
-            distance, out, _ = from_wall(walls.rows, w, world.box, r, time)
-            if world.plates.drive[w, PER_MASS] > 0.0:
-                distance -= world.plates.state[w, SHIFT]
-            gap = distance - reached
-            force = force_of(law, step, walls.springs, slot, out, gap)
+        distance, out, _ = from_wall(walls.rows, w, world.box, r, time)
+        if world.plates.drive[w, PER_MASS] > 0.0:
+            distance -= world.plates.state[w, SHIFT]
+        gap = distance - reached
+        if time < walls.own[w, OPENS] and acts(law, walls.springs, slot, gap):
+            force = force_of(law, step, walls.springs, slot, 1.0, out, gap)
             place = added_scaled(r, -distance, out)
             c = fill(rows, c, bodies.number[i], -1 - w, out, force, place, gap)
     return c
@@ -136,10 +147,11 @@ def _(solid, law, step, time, i, world, rows, c):
     for place in touched(solid, r, time, reached + world.lists.skin):
         for s in range(MOST):
             slot = i * MOST + s
-            touches = place.term != NO_TERM and solid.terms[i, s] == place.term
-            if touches and remembers(solid.springs, slot):
-                gap, b = place.distance - reached, -1 - len(world.walls.rows)
-                force = force_of(law, step, solid.springs, slot, place.normal, gap)
+            touches, gap = place.term != NO_TERM, place.distance - reached
+            touches = touches and solid.terms[i, s] == place.term
+            if touches and acts(law, solid.springs, slot, gap):
+                b = -1 - len(world.walls.rows)
+                force = force_of(law, step, solid.springs, slot, 1.0, place.normal, gap)
                 at = added_scaled(r, -place.distance, place.normal)
                 number, other = world.bodies.number[i], b - body_of(solid, place.term)
                 c = fill(rows, c, number, other, place.normal, force, at, gap)

@@ -18,7 +18,7 @@ SLOW = 0.5  # of the speed of the fastest grain: a plate as fast as that has thr
 class Now(NamedTuple):
     """Grains and plates after a step, which ends at `time`. speeds (n,): of grains; pushed
     (surfaces,): speeds of plates that are pushed, 0 of others; filled: packing fraction between
-    plates as they have moved."""
+    plates as they have moved, infinite where no room is left."""
 
     time: float
     speeds: Array
@@ -39,9 +39,9 @@ def too_fast(case: Case, now: Now) -> str:
 def no_room(case: Case, now: Now) -> str:
     """A line if plates of a given speed leave grains less room than they fill; nothing if not."""
     driven = [key for key, face, _ in surfaces(case) if face.contact and face.contact.speed > 0]
-    if not driven or 0 <= now.filled <= scales.CLOSEST[case.box.dimension]:
+    if not driven or now.filled <= scales.CLOSEST[case.box.dimension]:
         return ""
-    room = f"a packing fraction of {now.filled:.3g}" if now.filled > 0 else "none"
+    room = f"a packing fraction of {now.filled:.3g}" if math.isfinite(now.filled) else "none"
     return (
         f"plates leave grains too little room at a time of {now.time:.4g}, {room}; expected a "
         f"smaller {driven[0]}.contact.travel"

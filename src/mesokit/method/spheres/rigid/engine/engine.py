@@ -1,5 +1,6 @@
 """The engine of rigid grains, for a simulation and its observables."""
 
+import math
 from collections.abc import Collection, Sequence
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -59,8 +60,9 @@ class RigidEngine(SphereEngine):
         volume = self.case.spheres.fraction(self.case.box) * self.case.box.volume
         pushed = np.zeros(self.surfaces[0])
         pushed[self.surfaces[1][: len(self.system.plates)]] = self.system.plates[:, SPEED]
-        speeds, room = np.linalg.norm(self.velocities(), axis=1), np.prod(self.room_between_plates)
-        return Now(self.time, speeds, pushed, volume / float(room))
+        speeds, room = np.linalg.norm(self.velocities(), axis=1), self.room_between_plates
+        filled = volume / float(np.prod(room)) if (room > 0).all() else math.inf
+        return Now(self.time, speeds, pushed, filled)
 
     def check(self) -> None:
         """Raise RunError if a velocity or a place is not finite, or if plates leave no room."""

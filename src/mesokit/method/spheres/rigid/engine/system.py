@@ -218,7 +218,8 @@ class RigidSystem(ListedSpheres):
         """Pairs (m, 2) and values (m, 10) of all contacts with a force; see `collect.Rows`."""
         solid = self.walls.solid
         beside = () if self.listed.others is None else (solid.springs,)
-        m = sum(int(a.any(axis=1).sum()) for a in (self._sprung(), self.walls.springs, *beside))
+        kept, pulled = (self._sprung(), self.walls.springs, *beside), self.given.law.pull > 0
+        m = sum(len(a) if pulled else int(a.any(axis=1).sum()) for a in kept)
         rows = Rows(np.full((m, 2), -1, np.int64), np.zeros((m, COLUMNS)))
         world = self.world._replace(box=self.box_at(time))
         collect(self.given.law, self.given.motion.step, time, world, rows)

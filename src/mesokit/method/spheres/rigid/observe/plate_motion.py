@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar, Literal
 
@@ -69,7 +70,8 @@ class PlateMotionAccumulator(Samples):
     def observe(self, spheres: RigidEngine) -> None:
         d, shifts = spheres.dimension, spheres.plate_shifts
         filled = ball_volume(d, 1.0) * float((spheres.diameters() ** d).sum())
-        fraction = filled / float(np.prod(spheres.room_between_plates))
+        room = spheres.room_between_plates
+        fraction = filled / float(np.prod(room)) if (room > 0).all() else math.inf
         self.series.add(spheres.time, [*shifts[self.which], fraction])
         self.samples += 1
 
