@@ -35,12 +35,12 @@ def test_small_overlaps_are_accepted():
 
 
 def test_larger_ones_are_warned_of():
-    with pytest.warns(UserWarning, match="grains 1 and 2 overlap by 0.05 diameters, which stays"):
+    with pytest.warns(UserWarning, match="spheres 1 and 2 overlap by 0.05 diameters, which stays"):
         prepared(near(0.05))
 
 
 def test_deep_ones_are_refused():
-    with pytest.raises(CaseError, match=r"positions: grains 1 and 2 overlap by 0.11 .*push_back"):
+    with pytest.raises(CaseError, match=r"positions: spheres 1 and 2 overlap by 0.11 .*push_back"):
         prepared(near(0.11))
 
 
@@ -48,12 +48,12 @@ def test_deep_ones_are_refused():
 def test_those_with_plates_count(axis):
     places = APART.copy()
     places[1, "xy".index(axis)] = 8.7
-    with pytest.raises(CaseError, match=r"grain 1 and a plate overlap by 0\.2 diameters"):
+    with pytest.raises(CaseError, match=r"sphere 1 and a plate overlap by 0\.2 diameters"):
         prepared(places, walls=[Plates(axis)])
 
 
 def test_those_across_the_box_count():
-    with pytest.raises(CaseError, match=r"grains 0 and 2 overlap by 0\.2"):
+    with pytest.raises(CaseError, match=r"spheres 0 and 2 overlap by 0\.2"):
         prepared(np.array([[0.1, 2.0], [4.0, 2.0], [8.3, 2.0]]))
 
 

@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
-from mesokit.loops.neighbours import near_pairs
 from mesokit.method.spheres.common.made import made
-from mesokit.method.spheres.common.start.first_state import given_state
+from mesokit.method.spheres.common.start.first_state import deepest, given_state
 from mesokit.method.spheres.common.start.lattice import shut
 from mesokit.method.spheres.common.start.protocol import Array
 from mesokit.method.spheres.rigid import scales
@@ -54,26 +52,3 @@ def _check_overlaps(case: Case, places: Array, diameters: Array) -> None:
         warnings.warn(
             f"{said}, which stays so; spheres.push_back = 0.1 takes overlaps back", stacklevel=3
         )
-
-
-def deepest(
-    places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]
-) -> tuple[float, str]:
-    """The largest overlap of two spheres, or of one with a plate, over the mean of their diameters;
-    and which they are. 0 and no words where none overlap.
-
-    >>> depth, which = deepest(np.array([[1.0, 1.0], [1.9, 1.0]]), np.ones(2), np.full(2, 9.0),
-    ...                        np.array([False, False]))
-    >>> round(depth, 6), which
-    (0.1, 'grains 0 and 1')
-    """
-    beyond = 0.5 * diameters[:, None] - np.minimum(places, size - places)
-    into = np.where(closed, beyond, 0.0).max(axis=1) / diameters
-    depth, which = max(float(into.max()), 0.0), f"grain {int(into.argmax())} and a plate"
-    one, other, distances = near_pairs(places, float(diameters.max()), np.where(closed, 0.0, size))
-    touch = 0.5 * (diameters[one] + diameters[other])
-    overlaps = (touch - distances) / touch
-    if len(overlaps) and overlaps.max() > depth:
-        k = int(overlaps.argmax())
-        depth, which = float(overlaps[k]), f"grains {int(one[k])} and {int(other[k])}"
-    return (depth, which) if depth > 0 else (0.0, "")

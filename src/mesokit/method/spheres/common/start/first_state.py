@@ -86,16 +86,35 @@ def _checked(name: str, given: Any, shape: tuple[int, ...]) -> Array:
 
 def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]) -> None:
     """Raise CaseError for spheres that overlap one another, or plates, by more than rounding."""
-    largest = float(diameters.max())
-    beyond = np.minimum(places, size - places) - 0.5 * diameters[:, None]
-    lowest = np.where(closed, beyond, np.inf).min(axis=1)
-    if (lowest < -ROUNDING * largest).any():
-        raise CaseError(f"positions: sphere {int(lowest.argmin())} lies in a plate")
-    one, other, distances = near_pairs(places, largest, np.where(closed, 0.0, size))
-    gaps = distances - 0.5 * (diameters[one] + diameters[other])
-    if len(gaps) and gaps.min() < -ROUNDING * largest:
-        i, j = one[gaps.argmin()], other[gaps.argmin()]
-        raise CaseError(f"positions: spheres {i} and {j} overlap by {-gaps.min():.3g}")
+    depth, which = deepest(places, diameters, size, closed)
+    if depth > ROUNDING:
+        raise CaseError(
+            f"positions: {which} overlap by {depth:.3g} diameters; expected none of hard spheres; "
+            f"spheres.start.shrink = {2 * depth:.1g} of a file or run makes them smaller"
+        )
+
+
+def deepest(
+    places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]
+) -> tuple[float, str]:
+    """The largest overlap of two spheres, or of one with a plate, over the mean of their diameters;
+    and which they are. 0 and no words where none overlap.
+
+    >>> depth, which = deepest(np.array([[1.0, 1.0], [1.9, 1.0]]), np.ones(2), np.full(2, 9.0),
+    ...                        np.array([False, False]))
+    >>> round(depth, 6), which
+    (0.1, 'spheres 0 and 1')
+    """
+    beyond = 0.5 * diameters[:, None] - np.minimum(places, size - places)
+    into = np.where(closed, beyond, 0.0).max(axis=1) / diameters
+    depth, which = max(float(into.max()), 0.0), f"sphere {int(into.argmax())} and a plate"
+    one, other, distances = near_pairs(places, float(diameters.max()), np.where(closed, 0.0, size))
+    touch = 0.5 * (diameters[one] + diameters[other])
+    overlaps = (touch - distances) / touch
+    if len(overlaps) and overlaps.max() > depth:
+        k = int(overlaps.argmax())
+        depth, which = float(overlaps[k]), f"spheres {int(one[k])} and {int(other[k])}"
+    return (depth, which) if depth > 0 else (0.0, "")
 
 
 def thermal_velocities(

@@ -17,6 +17,7 @@ from mesokit.method.spheres.common.made import Made
 from mesokit.method.spheres.common.start.protocol import Array, Placed, SphereStart
 
 ROUNDING = 1e-5  # relative, of numbers in single precision and in texts
+SHRINK = "part by which diameters are smaller than there, so that spheres at rest come apart"
 
 
 @component
@@ -36,10 +37,18 @@ class FileStart(SphereStart):
         le=1e12,
     )
     moving: bool = param(True, doc="with the velocities and spins of the file; if not, drawn ones")
+    shrink: float = param(
+        0.0,
+        doc=SHRINK,
+        ge=0,
+        lt=0.5,
+    )
 
     def place(self, case: Case, made: Made) -> Placed:
         try:
-            return fitted(case, made, read_snapshot(self.file, self.scale), self.moving)
+            return fitted(
+                case, made, read_snapshot(self.file, self.scale), self.moving, self.shrink
+            )
         except CaseError as error:
             raise CaseError(f"spheres.start.file = {show(self.file, 500)}: {error}") from None
 
@@ -54,10 +63,16 @@ class RunStart(SphereStart):
     rule: Literal["run"] = tag("run")
     run: FileName = param(doc="folder of the earlier run: go on from its last state")
     moving: bool = param(True, doc="with the velocities and spins of that run; if not, drawn ones")
+    shrink: float = param(
+        0.0,
+        doc=SHRINK,
+        ge=0,
+        lt=0.5,
+    )
 
     def place(self, case: Case, made: Made) -> Placed:
         try:
-            return fitted(case, made, spheres_of(self.run), self.moving)
+            return fitted(case, made, spheres_of(self.run), self.moving, self.shrink)
         except MesokitError as error:
             raise CaseError(f"spheres.start.run = {show(self.run, 500)}: {error}") from None
 
@@ -65,11 +80,11 @@ class RunStart(SphereStart):
         return {"run": Path(self.run)}
 
 
-def fitted(case: Case, made: Made, there: Snapshot, moving: bool) -> Placed:
+def fitted(case: Case, made: Made, there: Snapshot, moving: bool, shrink: float) -> Placed:
     """The spheres of a file by the numbers of the case, from the corner of its box.
 
     `moving`: whether they keep their velocities and spins. Diameters are those of the file where
-    kinds have a spread, and masses go with them.
+    kinds have a spread, less a part `shrink` of them, and masses go with them.
 
     Raises CaseError unless box, number, diameters and masses are those of the case.
     """
@@ -94,9 +109,9 @@ def fitted(case: Case, made: Made, there: Snapshot, moving: bool) -> Placed:
         velocities = there.velocities[order, :d]
     if moving and there.spins is not None:
         spins = there.spins[order, 2] if d == 2 else there.spins[order]
-    near = np.allclose(diameters, made.diameters, rtol=ROUNDING, atol=0)
+    near = shrink == 0 and np.allclose(diameters, made.diameters, rtol=ROUNDING, atol=0)
     places = (there.positions - there.low)[order, :d]
-    return Placed(places, velocities, spins, None if near else diameters)
+    return Placed(places, velocities, spins, None if near else diameters * (1 - shrink))
 
 
 def _require_box(case: Case, there: Snapshot) -> None:
