@@ -116,3 +116,28 @@ def test_contacts_of_a_packing_hold_its_weight_with_those_that_only_pull():
     np.add.at(total, found.pairs[pairs, 1], -found.forces[pairs])
     assert np.abs(total).max() < 1e-4
     assert (found.gaps[pairs] > 1e-5).sum() > 2  # pulled over a gap, and held apart by others
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_the_work_of_the_pull_is_in_the_books_of_energy(friction):
+    """Two that pull one another together lose what the pull has given them, F times the way."""
+    force, reach, gap = 2.0, 0.05, 0.04
+    engine = rigid(
+        [10, 10], given=at_rest([[4.0, 5.0], [5.0 + gap, 5.0]]), timestep=1e-4, solver=exact(),
+        contact={"friction": friction, "cohesion": {"force": force, "range": reach}},
+    )  # fmt: skip
+    assert engine.energies()["contact"] == pytest.approx(-force * (reach - gap), abs=1e-12)
+    engine.advance(100)  # they fly towards one another
+    flying, speed = engine.energies(), np.abs(engine.velocities()[:, 0])
+    assert speed == pytest.approx(force * engine.time, rel=1e-9)
+    assert flying["translation"] == pytest.approx(force**2 * engine.time**2, rel=1e-9)
+    assert flying["translation"] + flying["contact"] == pytest.approx(
+        -force * (reach - gap),
+        abs=2e-2 * flying["translation"],  # first order in the step
+    )
+    assert sum(engine.lost.values()) == pytest.approx(0.0, abs=1e-12)
+    engine.advance(2000)
+    rest = engine.energies()
+    assert rest["translation"] == pytest.approx(0.0, abs=1e-12)
+    assert rest["contact"] == pytest.approx(-force * reach, rel=1e-6)
+    assert engine.lost["impact"] == pytest.approx(force * gap, rel=2e-2)

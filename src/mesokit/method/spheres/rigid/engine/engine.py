@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import RunError
+from mesokit.geometry import walls
 from mesokit.method.spheres.common.contacts.now import Contacts, in_order
 from mesokit.method.spheres.common.engine import SphereEngine
 from mesokit.method.spheres.common.walls import AXIS, KIND, PLANE, displaced, surfaces_of
@@ -19,6 +20,8 @@ from mesokit.method.spheres.rigid.engine.system import RigidSystem
 from mesokit.method.spheres.rigid.scales import timestep_of
 from mesokit.method.spheres.rigid.setup import setup_of
 from mesokit.seam.engine import Array, Integers, State
+
+LOOKS = 1000  # steps between two looks at the room that plates leave
 
 
 class Solved(NamedTuple):
@@ -42,6 +45,8 @@ class RigidEngine(SphereEngine):
         self.timestep, self.threads = timestep_of(case), threads
         self.system, self.surfaces = self._system(), surfaces_of(case)
         self.seconds = {"steps": 0.0}
+        contacts = [surface.contact for _, surface, _ in walls.surfaces(case)]
+        self._driven = any(contact is not None and contact.speed > 0 for contact in contacts)
 
     def _system(self) -> RigidSystem:
         return RigidSystem(setup_of(self.case, self.made), self.threads)
@@ -49,11 +54,17 @@ class RigidEngine(SphereEngine):
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps. Raises RunError for grains too fast for the timestep."""
         began = perf_counter()
-        done = self.system.run(self.step, steps)
-        self.step += done
+        end = self.step + steps
+        while self.step < end or steps == 0:
+            some = min(end - self.step, LOOKS)
+            done = self.system.run(self.step, some)
+            self.step += done
+            if done < some:
+                raise RunError(too_fast(self.case, self._now()))
+            self._require_room()
+            if steps == 0:
+                break
         self.seconds["steps"] += perf_counter() - began
-        if done < steps:
-            raise RunError(too_fast(self.case, self._now()))
 
     def _now(self) -> Now:
         """What grains and plates do, for the message that ends a run."""
@@ -69,7 +80,11 @@ class RigidEngine(SphereEngine):
         bodies = self.system.bodies
         if not (np.isfinite(bodies.motion).all() and np.isfinite(bodies.place).all()):
             raise RunError("velocities are no numbers any more; expected a shorter timestep")
-        if squeezed := no_room(self.case, self._now()):
+        self._require_room()
+
+    def _require_room(self) -> None:
+        """Raise RunError if plates of a given speed leave grains less room than they fill."""
+        if self._driven and (squeezed := no_room(self.case, self._now())):
             raise RunError(squeezed)
 
     def end_warmup(self) -> None:
@@ -104,13 +119,17 @@ class RigidEngine(SphereEngine):
         return spins[:, 0] if d == 2 else spins
 
     def potential_energy(self) -> float:
-        return 0.0
+        """That of cohesion: minus its force times how far gaps lie within its range."""
+        law = self.case.spheres.contact.cohesion
+        if law is None:
+            return 0.0
+        return -law.force * math.fsum(np.maximum(law.range - self.contacts().gaps, 0.0))
 
     def contacts(self) -> Contacts:
         """All contacts that had a force in the last step, with places and normals of now."""
         pairs, values = self.system.contacts(self.time)
-        walls = pairs[:, 1] < 0
-        pairs[walls, 1] = -1 - self.surfaces[1][-1 - pairs[walls, 1]]
+        at_walls = pairs[:, 1] < 0
+        pairs[at_walls, 1] = -1 - self.surfaces[1][-1 - pairs[at_walls, 1]]
         return in_order(pairs, values, self.dimension, lambda places: self.system.inside(places)[0])
 
     def coordination(self) -> NDArray[np.int64]:

@@ -154,7 +154,7 @@ def finish(worker, law, step, world, order, total, taken):
             rolling = twisted(normal, entries(order.roll, c, TORQUE, alongside(flat)))
         keep_at(world, order.slot[c], Springs(in_space(impulse(normal, push, drag)), rolling))
         pushed = push - order.beside[c, PULL]
-        count_losses(law, world, order, c, pushed, drag, taken)
+        count_losses(law, world, order, c, push, drag, taken)  # a pull has potential energy
         kind = order.slot[c] % KINDS
         if kind != PAIR:
             rows, s = len(world.walls.rows), order.slot[c] // KINDS
