@@ -49,6 +49,8 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
                              "one of 'soft-spheres'", "has contact, solver, push_back of its own")),
     "key of event-driven": ({STEP: 'collision = { rule = "hard" }'},
                             ("spheres.collision: unknown key",)),
+    "solver without table": ({"solver = { " + RULE + " }": 'solver = "gauss-seidl"'},
+                             ("spheres.solver = 'gauss-seidl'", "{ rule = 'gauss-seidel' }")),
     "no time": ({STEP: "timestep = 0"}, ("spheres.timestep = 0", "above 0")),
     "coarse": ({STEP: "kT = 1\ntimestep = 0.2"},
                ("spheres.timestep = 0.2: grains pass the skin", "(0.25)", "less than 0.0")),

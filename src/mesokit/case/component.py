@@ -212,6 +212,10 @@ def first_line(
     key = re.match(r"(\w+)(\[#\d+\])?(\.| = |: )", words) if kind == "value_error" else None
     if key and any(key[1] in part.__pydantic_fields__ for part in parts):  # it names the key itself
         return f"{path}.{words}" if path else words
+    if words == TABLE and isinstance(given, str) and (named := tag_of(parts[0]) if parts else None):
+        names = names_of(here if first["loc"] else cls)
+        close = difflib.get_close_matches(given, names, 1, 0.5) or names[:1]
+        words += f", such as {{ {named[0]} = {show(close[0])} }}"
     if not first["loc"]:  # a check of the whole component
         return f"{path}: {words}" if path else words
     return f"{path} = {show(given)}: {words}"
@@ -367,6 +371,7 @@ def _members(hint: Any) -> list[Any]:
     return [found for arg in typing.get_args(hint) for found in _members(arg)]
 
 
+TABLE = "expected a table"
 _LIMITS = {
     "greater_than": ("gt", "a number above"),
     "greater_than_equal": ("ge", "a number of at least"),
@@ -388,8 +393,8 @@ def _expected(entry: Any) -> str:
     if kind == "value_error":
         return str(context["error"])
     return {
-        "dataclass_type": "expected a table",
+        "dataclass_type": TABLE,
         "string_type": "expected a text in quotes",
         "bool_type": "expected true or false",
-        "model_attributes_type": "expected a table",
+        "model_attributes_type": TABLE,
     }.get(kind, str(entry["msg"]))
