@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mesokit import Plates, RunError, Surface, SurfaceContact
+from mesokit.method.spheres.rigid.engine.ended import Now, too_fast
 from mesokit.method.spheres.rigid.solver.jacobi import Jacobi
 from mesokit.seam.method import method_of
 from tests.helpers.rigid_grains import at_rest, rigid
@@ -16,6 +17,7 @@ ROW = [[0.5 + i, 0.5] for i in range(8)]
 STEPS = 2000
 HEAP = ROW + [[1 + i, 0.5 + np.sqrt(0.75)] for i in range(7)]
 DRIVEN = Surface(contact=SurfaceContact(speed=0.5))
+FAST = Surface(contact=SurfaceContact(speed=1.2))
 LIGHT = Surface(contact=SurfaceContact(force=1e4, mass=1e-3))
 
 
@@ -68,3 +70,11 @@ def test_the_cause_is_named(name):
     given, warned, said = CASES[name]
     warnings, line = ended(**given)
     assert warned in warnings and said in line and "\n" not in line
+
+
+@pytest.mark.parametrize(("filled", "expected"), [(0.76, "press grains together"), (0.5, "below")])
+def test_plates_are_the_cause_from_when_grains_bear_forces_all_through(filled, expected):
+    walls = [Plates("x"), Plates("y", upper=FAST)]
+    case = rigid((8, 8), walls, given=at_rest(HEAP), timestep=0.01).case
+    now = Now(3.0, np.array([0.1, 19.9]), np.zeros(4), filled)
+    assert expected in too_fast(case, now)

@@ -254,7 +254,9 @@ def _of_walls(case: Case, end: float) -> Iterator[str]:
             f"{packing}; expected a smaller {moved}.contact.travel"
         )
     for i, wall in enumerate(case.walls):
-        if wall.opens is not None and wall.opens < end:
+        if wall.opens is not None and wall.opens >= end:
+            yield f"wall[#{i + 1}].opens = {wall.opens:g}: the run ends before, at {end:g}"
+        elif wall.opens is not None:
             for axis in set(open_falls(case, wall.opens)) - set(open_falls(case)):
                 yield (
                     f"wall[#{i + 1}].opens = {wall.opens:g}: nothing ends the fall along {axis} "

@@ -9,9 +9,11 @@ from mesokit.case.case import Case
 from mesokit.case.component import name_of, show
 from mesokit.geometry.walls import surfaces
 from mesokit.method.spheres.common.checks import open_falls
+from mesokit.method.spheres.common.cost import AT_REST_FILLED
 from mesokit.method.spheres.rigid import scales
 from mesokit.seam.engine import Array
 
+PRESSED = 0.9  # of the packing fraction at rest, from which grains bear forces all through
 SLOW = 0.5  # of the speed of the fastest grain: a plate as fast as that has thrown it
 
 
@@ -57,6 +59,12 @@ def _cause(case: Case, now: Now, speed: float) -> str:
         )
     if squeezed := no_room(case, now):
         return squeezed
+    driven = [key for key, face, _ in named if face.contact and face.contact.speed > 0]
+    if driven and now.filled > PRESSED * AT_REST_FILLED[case.box.dimension]:
+        return (
+            f"plates press grains together, to a packing fraction of {now.filled:.3g}; expected a "
+            f"smaller {driven[0]}.contact.travel, or a lower contact.speed"
+        )
     opened = [i for i, wall in enumerate(case.walls) if (wall.opens or math.inf) <= now.time]
     falls = open_falls(case, now.time) if opened else []
     if falls:
