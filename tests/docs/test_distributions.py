@@ -22,10 +22,11 @@ PARTS = "mesokit/kernels/shipped/"  # where `make parts` has been called
 
 
 def python(*words: str | Path, cwd: Path, **environment: str) -> str:
+    # bytecode beside the sources would be among the files of a folder that several tests read
+    environment = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"} | environment
     done = subprocess.run(
-        [sys.executable, *map(str, words)], cwd=cwd, env=os.environ | environment,
-        capture_output=True, text=True,
-    )  # fmt: skip
+        [sys.executable, *map(str, words)], cwd=cwd, env=environment, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
     return done.stdout
 
