@@ -54,7 +54,7 @@ class SurfaceContact:
     )
     pressure: float | None = param(
         None,
-        doc="the same by a force per area between the plates across it",
+        doc="a plate is pushed into the box by this force per area between the plates across it",
         unit="mass length^(2-d)/time^2",
         gt=0,
         le=1e12,
