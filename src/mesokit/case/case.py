@@ -251,7 +251,7 @@ def _require_keys(made: type[Case], given: Mapping[str, Any]) -> None:
         own = _section(made, section)
         if own is None or not isinstance(values, dict):
             continue
-        for key in set(values).difference(known_keys(own)):
+        for key in (key for key in values if key not in known_keys(own)):
             every = {name: _section(case_class(name), section) for name in methods.METHODS}
             others = {n: known_keys(cls) for n, cls in every.items() if cls is not None}
             theirs = [name for name, keys in others.items() if key in keys]

@@ -257,7 +257,8 @@ def _of_walls(case: Case, end: float) -> Iterator[str]:
         if wall.opens is not None and wall.opens >= end:
             yield f"wall[#{i + 1}].opens = {wall.opens:g}: the run ends before, at {end:g}"
         elif wall.opens is not None:
-            for axis in set(open_falls(case, wall.opens)) - set(open_falls(case)):
+            before = open_falls(case)
+            for axis in (axis for axis in open_falls(case, wall.opens) if axis not in before):
                 yield (
                     f"wall[#{i + 1}].opens = {wall.opens:g}: nothing ends the fall along {axis} "
                     "afterwards, and the run ends where grains are too fast; expected a wall below"

@@ -96,7 +96,7 @@ class EnergyBudgetAccumulator(Samples):
         contacts = [surface.contact for surface in surfaces if surface.contact is not None]
         moves = any(surface.moves for surface in surfaces)
         moves |= any(c.amplitude > 0 or c.temperature is not None for c in contacts)
-        moves |= any(c.speed or c.force or c.pressure for c in contacts)
+        moves |= any(c.drives for c in contacts)
         if moves or any(surface.rule == "diffuse" for surface in surfaces):
             return "less the work of walls"
         if case.box.sheared:

@@ -55,14 +55,14 @@ class RigidEngine(SphereEngine):
         """Run some steps. Raises RunError for grains too fast for the timestep."""
         began = perf_counter()
         end = self.step + steps
-        while self.step < end or steps == 0:
+        while True:
             some = min(end - self.step, LOOKS)
             done = self.system.run(self.step, some)
             self.step += done
             if done < some:
                 raise RunError(too_fast(self.case, self._now()))
             self._require_room()
-            if steps == 0:
+            if self.step >= end:
                 break
         self.seconds["steps"] += perf_counter() - began
 
