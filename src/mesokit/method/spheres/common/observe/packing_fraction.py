@@ -13,6 +13,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.walls import closed_axes, surfaces
 from mesokit.method.spheres.common.observe.protocol import OfSpheres, pull_axis
 from mesokit.method.spheres.common.observe.shared.cut_volumes import in_slabs, with_images
+from mesokit.method.spheres.common.observe.wall_force import ROUNDING
 from mesokit.method.spheres.common.region import check_region
 from mesokit.seam.engine import RunningSpheres
 from mesokit.seam.estimate import Array
@@ -20,7 +21,6 @@ from mesokit.seam.observable import BlockAccumulator, accumulator_of
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
-ROUNDING = 1e-12  # of a fraction
 SURFACE = 0.1  # of the grains, above the interior of a bed and below it
 
 
@@ -111,7 +111,9 @@ class PackingFractionAccumulator(BlockAccumulator):
         what = f"packing fraction of the {'box' if whole else 'region'}"
         contacts = [face.contact for _, face, _ in surfaces(self.case)] if whole else []
         moved = any(contact is not None and contact.drives for contact in contacts)
-        note = "space that plates have passed counts; plate-motion has that between them"
+        note = (
+            "space that plates have passed counts; plate-motion of contact dynamics leaves it out"
+        )
         rounding = error[0] <= ROUNDING * value[0]
         yield Comparison(what, value[0], 0.0 if rounding else error[0], note=note if moved else "")
         if self.pull is not None:
