@@ -111,9 +111,7 @@ class PackingFractionAccumulator(BlockAccumulator):
         what = f"packing fraction of the {'box' if whole else 'region'}"
         contacts = [face.contact for _, face, _ in surfaces(self.case)] if whole else []
         moved = any(contact is not None and contact.drives for contact in contacts)
-        note = (
-            "space that plates have passed counts; plate-motion of contact dynamics leaves it out"
-        )
+        note = "space that plates have passed counts; plate-motion, of rigid grains, leaves it out"
         rounding = error[0] <= ROUNDING * value[0]
         yield Comparison(what, value[0], 0.0 if rounding else error[0], note=note if moved else "")
         if self.pull is not None:
