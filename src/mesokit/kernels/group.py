@@ -296,6 +296,35 @@ def _store(context: Any, builder: Any, base: Any, at: int, kind: Any, value: Any
     return at + 1
 
 
+@intrinsic
+def put_value(typing_context: Any, place: Any, value: Any) -> Any:
+    """Write a value to an address: each of its numbers, in order, in a word."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        base = builder.inttoptr(arguments[0], _BYTES)
+        _store(context, builder, base, 0, signature.args[1], arguments[1])
+        return context.get_dummy_value()
+
+    return types.void(types.int64, value), generate
+
+
+def value_at(kind: Any) -> Any:
+    """The function that reads a value of a type from an address, as `put_value` writes it."""
+
+    def load(typing_context: Any, place: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return _load(context, builder, builder.inttoptr(arguments[0], _BYTES), 0, kind, True)
+
+        return kind(types.int64), generate
+
+    return intrinsic(load)
+
+
+def words_in(kind: Any) -> int:
+    """The number of words of a value of a type."""
+    return _words_of(kind)
+
+
 def writer(name: str) -> Any:
     """The function (group, number) that writes a field anew, which the class declares as changing.
 

@@ -22,6 +22,7 @@ from mesokit.method.mpcd.engine.domains.messages.shared import (
 from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.fixed_point import from_fixed
 from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.pointer import element
 
 FIELDS = 3  # tag of messages
 
@@ -29,8 +30,9 @@ FIELDS = 3  # tag of messages
 class NeighbourSums(NamedTuple):
     """A sum in every cell of the step, with how the cells lie.
 
-    `term` is its place among the terms of a cell, `values` one number for each cell, `cells` their
-    number along each axis (x varies fastest), `closed` 1 for each axis along which walls end them.
+    `term` is its place among the terms of a cell, `values` one number for each cell, an array or
+    its address, `cells` their number along each axis (x varies fastest), `closed` 1 for each axis
+    along which walls end them.
     """
 
     term: int
@@ -116,11 +118,11 @@ def _gradient_2d(field, cell):
         row = next_along(y, step, ny, field.closed[1]) * nx
         east = next_along(x, 1, nx, field.closed[0])
         west = next_along(x, -1, nx, field.closed[0])
-        gx += weight * (values[row + east] - values[row + west])
+        gx += weight * (element(values, row + east) - element(values, row + west))
         column = next_along(x, step, nx, field.closed[0])
         north = next_along(y, 1, ny, field.closed[1]) * nx
         south = next_along(y, -1, ny, field.closed[1]) * nx
-        gy += weight * (values[north + column] - values[south + column])
+        gy += weight * (element(values, north + column) - element(values, south + column))
     return gx, gy
 
 
@@ -136,7 +138,7 @@ def _gradient_3d(field, cell):
         for j in range(-1, 2):
             row = (up + next_along(y, j, ny, field.closed[1])) * nx
             for i in range(-1, 2):
-                value = values[row + next_along(x, i, nx, field.closed[0])]
+                value = element(values, row + next_along(x, i, nx, field.closed[0]))
                 gx += float(i) * _weight(j) * _weight(k) * value
                 gy += float(j) * _weight(i) * _weight(k) * value
                 gz += float(k) * _weight(i) * _weight(j) * value

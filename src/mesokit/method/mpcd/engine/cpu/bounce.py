@@ -4,6 +4,7 @@ from mesokit.geometry.primitive.numbers import length
 from mesokit.geometry.protocol import (
     Chance,
     first_hit,
+    free,
     happens,
     homed,
     lever,
@@ -14,9 +15,10 @@ from mesokit.geometry.protocol import (
     unmet,
 )
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
-from mesokit.method.mpcd.streaming import fall
-from mesokit.scalar.fixed_point import add_quanta
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.method.mpcd.streaming import fall, halfway, vector
+from mesokit.scalar.fixed_point import add_quanta, added_quanta, integers
+from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.pointer import add_words
 from mesokit.scalar.vector import added, added_scaled, outer, scaled
 
 DRIVEN = 1.0 + 1e-9  # of the speed that surfaces at rest can leave: more is not rounding
@@ -36,10 +38,32 @@ def body_takes(impulse, solid, term, r, p, scale):
     add_recoil(impulse, surface, lever, p, scale)
 
 
-@scalar
+@by_type
 def take_sum(impulse, surface, given, scale):
-    """Add momentum and angular momentum to what a surface took, as whole numbers."""
+    """Add momentum and angular momentum to what a surface took, as whole numbers.
+
+    `impulse` is an array of one thread, or the address of numbers to which all threads add.
+    """
+    from numba import types
+
+    return _to_all if isinstance(impulse, types.Integer) else _to_own
+
+
+def _to_own(impulse, surface, given, scale):
     add_quanta(impulse[surface * len(given) :], scale, given)
+
+
+def _to_all(impulse, surface, given, scale):
+    add_words(impulse, surface * len(given), added_quanta(given, scale, integers(given)))
+
+
+@scalar
+def fly_among(physics, counter, particle, r, v, impulse):
+    """Position and velocity a timestep later of a particle that may hit a surface."""
+    a = vector(halfway(physics.field, r, v, physics.timestep), r)
+    if free(physics.solid, r, v, a, physics.timestep):
+        return fall(r, v, a, physics.timestep)
+    return bounce(physics, physics.timestep, counter, particle, r, v, a, impulse)
 
 
 @seldom

@@ -2,53 +2,24 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any, Concatenate, ParamSpec, TypeVar
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.case import Case
-from mesokit.errors import RunError
 from mesokit.loops.clock import BEADS, CELLS, FINISH, FIRST, SORT, SWEEP
 from mesokit.loops.threads import Threads
-from mesokit.method.mpcd.engine.beads.interactions import refuse_broken
-from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, MEASURE_WALLS, Course
 from mesokit.method.mpcd.engine.cpu.memory import Memory
-from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.cpu.sort import sort
 from mesokit.method.mpcd.engine.cpu.step import advance
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
-    MOST_PARTICLES,
-    ONE_PARTICLE,
-    WithCount,
-)
-from mesokit.method.mpcd.engine.measure.by_pieces import ByPieces
 from mesokit.method.mpcd.engine.measure.readings import Readings
-from mesokit.method.mpcd.engine.pieces import Piece, of_state, pieces, require_finite
-from mesokit.method.mpcd.molecule import Springs
+from mesokit.method.mpcd.engine.running import Running
 from mesokit.scalar.system import TICK
-from mesokit.statistics import Tally
-
-P = ParamSpec("P")
-T = TypeVar("T")
 
 
-def _read(
-    method: Callable[Concatenate[Any, P], T], of: Callable[[Readings], Any] = lambda one: one
-) -> Callable[Concatenate[CPU, P], T]:
-    """A method of the readings, or of what `of` makes of them, as one of the engine."""
-
-    @functools.wraps(method)
-    def read(engine: CPU, *given: P.args, **more: P.kwargs) -> T:
-        return method(of(engine.readings), *given, **more)
-
-    return read
-
-
-class CPU:
-    """A fluid in memory, its steps, and readings of it.
+class CPU(Running):
+    """A fluid in memory, whose steps the threads of a processor do.
 
     Parameters
     ----------
@@ -78,90 +49,11 @@ class CPU:
         self.n, self.dimension, self.box = self.numbers.n, self.numbers.dimension, self.numbers.box
         self.threads.compile_ahead(advance, self._course(0, 0), *self.memory.groups())
 
-    @property
-    def step(self) -> int:
-        """Steps done, the warm-up included."""
-        return self.memory.step
-
-    @property
-    def time(self) -> float:
-        """Time since the start of the warm-up."""
-        return self.step * self.numbers.timestep
-
-    # --- running --------------------------------------------------------------------------------
-
-    def parts(self, by_first: bool = False) -> Iterator[tuple[int, int]]:
-        """Numbers of the particles, from one to before another, that are to be made here.
-
-        Of several ranks each makes its part, or the first of them all.
-        """
-        return pieces(0, self.n, self.numbers.beads)
-
-    def begin(self, particles: Iterable[tuple[Any, ...]]) -> None:
-        """Store the fluid's particles: a `Piece` for each of `parts`."""
-        self._take(Piece(*piece) for piece in particles)
-        self.sort()
-
-    def _take(self, particles: Iterable[Piece]) -> None:
-        """Store these particles, in the order of their numbers."""
-        for piece in particles:
-            self.memory.put(*piece, first=int(piece.ids[0]) // self.numbers.beads)
-
-    def advance(self, steps: int, measure: Collection[str] = ()) -> None:
-        """Run some steps; velocities are then those after the collision of the last."""
-        if steps == 0:
-            self._advance(0, False)
-        while steps > 0:
-            every = self.numbers.sort_every
-            due = every - self.step % every
-            now = min(steps, due)
-            self._advance(now, "stress" in measure and now == steps)
-            steps -= now
-            if now == due:
-                self.sort()
-
-    def _advance(self, steps: int, measure_stress: bool) -> None:
-        memory = self.memory
-        self.readings.forget()
-        what = MEASURE_WALLS * ("walls" in memory.measures) + MEASURE_STRESS * measure_stress
-        if measure_stress:
-            memory.fluid.taken.tensor[:] = 0.0
-            if self.solutes is not None:
-                self.solutes.state_of.tensor[:] = 0.0
-        self._steps(steps, what)
-        self.readings.wall_steps += steps
-        molecule, springs = self.case.fluid.molecule, memory.physics.molecule
-        if molecule is not None and isinstance(springs, Springs):
-            advice = (
-                f"take more sub-steps than {springs.substeps} (fluid.molecule.substeps), a stiffer "
-                "bond, or start from particles that are not so far apart"
-            )
-            faults = memory.fluid.taken.faults
-            refuse_broken(faults, molecule.bond.longest, "particles", advice)
-        if self.solutes is not None:
-            self.solutes.check()
-        if measure_stress:
-            self.readings.find_stress()
-
     def _steps(self, steps: int, what: int) -> None:
         self.threads.run(advance, self._course(steps, what), *self.memory.groups())
         self.memory.step += steps
 
-    def _course(self, steps: int, what: int) -> Course:
-        memory, case = self.memory, self.case
-        return Course(
-            steps=steps,
-            done=self.step,
-            seed=case.run.seed,
-            grid_shift=case.fluid.grid_shift,
-            closed=tuple(float(shut) for shut in self.numbers.closed),
-            flags=what,
-            box=memory.box,
-            grid=memory.grid,
-        )
-
-    def sort(self) -> None:
-        """Bring particles back into the box and those of one cell together in memory."""
+    def _sorted(self) -> int:
         memory = self.memory
         where = memory.box, memory.grid, memory.fluid.particles
         self.threads.run(sort, memory.physics.zero, *where, memory.order)
@@ -170,77 +62,7 @@ class CPU:
             crowds = np.diff(memory.order.ends[-1, :-1], prepend=0)
         else:
             crowds = np.bincount(memory.fluid.particles.cell[memory.places], minlength=1)
-        self._check_sums(int(crowds.max()))
-
-    def _check_sums(self, crowd: int) -> None:
-        """That a cell of so many particles of the fastest kind cannot make its sums overflow."""
-        fastest = self.readings.fastest()
-        if fastest >= self.numbers.fastest:
-            slower = "lower the force or the velocity of the surfaces"
-            held = self.case.fluid.thermostat.acts
-            reason = f"the fluid heats up: {'' if held else 'add a thermostat, or '}{slower}"
-            if self.step == 0:
-                reason = "fluid.start: give slower particles"
-            raise RunError(
-                f"step {self.step}: a particle moves at {fastest:g}, beyond the "
-                f"{self.numbers.fastest:g} that cell sums can hold; {reason}"
-            )
-        heaviest, energy = max(self.numbers.masses_of_kinds), self.numbers.energy
-        full = crowd * heaviest * fastest * self.numbers.units["momentum"] > 2.0**61
-        if isinstance(energy, WithCount):
-            full |= crowd > MOST_PARTICLES
-            full |= crowd * heaviest * fastest**2 * energy.scale > ONE_PARTICLE
-        if full:
-            raise RunError(
-                f"step {self.step}: {crowd} particles in one cell, some as fast as {fastest:g}: "
-                "more than cell sums can hold"
-            )
-
-    def check(self) -> None:
-        """Raise RunError if a particle is too fast for the sums of cells."""
-        self._check_sums(1)
-
-    def end_warmup(self) -> None:
-        """Set the momentum that surfaces took to 0."""
-        self.readings.forget_walls()
-
-    # --- its state ------------------------------------------------------------------------------
-
-    def state(self) -> dict[str, Any]:
-        """Everything that the next step depends on, by particle number.
-
-        Raises RunError if sums have overflowed.
-        """
-        self.check()
-        return {
-            **(self.solutes.state() if self.solutes else {}),
-            **self._state_of_particles(),
-            "step": np.int64(self.step),
-            **self.readings.state_of_walls(),
-            "wall_rates": self.readings.wall_rates(),
-        }
-
-    def _state_of_particles(self) -> dict[str, Any]:
-        return dict(zip(("positions", "velocities", "images"), self.memory.read(), strict=True))
-
-    def restore(self, state: Mapping[str, NDArray]) -> None:
-        """Go on from a state, with the same bits whatever the number of threads was."""
-        self._restore(state, self._given(state))
-
-    def _given(self, state: Mapping[str, Any]) -> Iterator[Piece]:
-        require_finite(state)
-        yield from of_state(state, (self.n, self.dimension), self.numbers.beads)
-
-    def _restore(self, state: Mapping[str, NDArray], particles: Iterable[Piece]) -> None:
-        """Go on from these particles, and from all else in a state."""
-        self.readings.forget()
-        self.memory.fluid.taken.faults[:] = 0
-        self._take(particles)
-        self.memory.step = int(state["step"])
-        self.readings.restore_walls(state)
-        self.memory.wall_rates[:] = state["wall_rates"]
-        if self.solutes is not None:
-            self.solutes.restore(dict(state))
+        return int(crowds.max())
 
     @property
     def seconds(self) -> dict[str, float]:
@@ -248,45 +70,3 @@ class CPU:
         beads = {"beads": BEADS} if self.solutes is not None else {}
         names = {"sweep": SWEEP, "cells": CELLS, "finish": FINISH, **beads, "sort": SORT}
         return {name: TICK * float(self.threads.clock[FIRST + k]) for name, k in names.items()}
-
-    def balance(self) -> dict[str, Any]:
-        """How the work was shared anew while it ran."""
-        return {}
-
-    # --- readings for observables ---------------------------------------------------------------
-
-    totals = _read(Readings.totals)
-    moments = _read(Readings.moments)
-    modes = _read(Readings.modes)
-    positions = _read(Readings.positions)
-    whole_positions = _read(Readings.whole_positions)
-    velocities = _read(Readings.velocities)
-    images = _read(Readings.images)
-    masses = _read(Readings.masses)
-    species = _read(Readings.species)
-    bonds = _read(Readings.bonds)
-    bond_vectors = _read(Readings.bond_vectors)
-    sums_of_particles = _read(ByPieces.sums_of_particles, ByPieces)
-    sums_of_bonds = _read(ByPieces.sums_of_bonds, ByPieces)
-    potential_energy = _read(ByPieces.potential_energy, ByPieces)
-
-    @property
-    def stress(self) -> dict[str, Floats]:
-        """Stress of the last step, if that was measured, by its parts."""
-        return self.readings.stress
-
-    @property
-    def wall_impulse(self) -> Floats:
-        """Momentum (d) and angular momentum (1 or 3) that each surface took since the warm-up."""
-        columns = self.dimension + (1 if self.dimension == 2 else 3)
-        return self.readings.wall_tally.value.reshape(-1, columns)
-
-    @property
-    def wall_tally(self) -> Tally:
-        """Exact sums of `wall_impulse` since the end of the warm-up."""
-        return self.readings.wall_tally
-
-    @property
-    def wall_steps(self) -> int:
-        """Number of steps in `wall_tally`."""
-        return self.readings.wall_steps

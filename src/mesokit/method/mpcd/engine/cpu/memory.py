@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.geometry.protocol import Nothing
 from mesokit.kernels.packing import Packing
 from mesokit.loops import layout
 from mesokit.loops.layout import LANES, zeros
@@ -27,10 +26,10 @@ from mesokit.method.mpcd.engine.cpu.groups import (
 )
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-from mesokit.method.mpcd.engine.cpu.physics import Physics
 from mesokit.method.mpcd.engine.cpu.sort import Order
 from mesokit.method.mpcd.engine.embedded.allocate import embedded_of
-from mesokit.method.mpcd.engine.virtual.allocate import virtual_particles, with_clearance
+from mesokit.method.mpcd.engine.parameters import parameters_of
+from mesokit.method.mpcd.engine.virtual.allocate import virtual_particles
 
 Floats = NDArray[np.float64]
 MOST = 2**31 - 2
@@ -54,12 +53,12 @@ class Memory:
         self.numbers, self.threads, self.step = numbers, threads, 0
         self.measures, self.domain = frozenset(measures), domain
         self._packing = Packing()
-        self._tables: list[Any] = []  # compiled code has their addresses
         self._places, self._placed = np.zeros(0, np.int64), (0, numbers.beads)
         if earlier is None or (numbers.solids and earlier.domain.block != domain.block):
-            self.physics = self._physics()
+            self._parameters = parameters_of(numbers, None if domain is None else domain.held)
         else:  # tables of solids take long
-            self.physics, self._tables = earlier.physics, earlier._tables
+            self._parameters = earlier._parameters
+        self.physics = self._parameters.physics
         self._allocate()
         self.solutes: Any = ()
         if case.solutes is not None:
@@ -80,41 +79,6 @@ class Memory:
     def groups(self) -> tuple[Any, ...]:
         """Physics, fluid, solutes and walls as the step takes them."""
         return self._packing(self.physics, self.fluid, self.solutes, self.walls)
-
-    def _physics(self) -> Physics:
-        numbers, fluid, d = self.numbers, self.numbers.case.fluid, self.numbers.dimension
-        rule, molecule = fluid.collision.kernel(d, fluid.kT), ()
-        if fluid.molecule is not None:
-            molecule, links = fluid.molecule.kernel(d, fluid.timestep, fluid.kT, fluid.mass)
-            self._tables.append(links)
-        return Physics(
-            rule=fluid.collision.among(rule, tuple(numbers.counts), fluid.mass),
-            thermostat=fluid.thermostat.kernel(fluid.kT, numbers.least_energy),
-            field=fluid.force.kernel(numbers.case.box.size),
-            solid=self._solid(),
-            masses=(numbers.heaviest,) if numbers.uniform else (),
-            energy=numbers.energy,
-            timestep=fluid.timestep,
-            kT=fluid.kT,
-            molecule=molecule,
-            zero=(0.0,) * d,
-            coefficients=(0.0,) * numbers.coefficient_count,
-            terms=(0,) * len(numbers.scales),
-            scales=numbers.scales,
-            stress_scale=numbers.units["stress"],
-        )
-
-    def _solid(self) -> tuple:
-        """Parameters of the solids; plates alone have a kernel of their own."""
-        numbers = self.numbers
-        if numbers.solids is None:
-            return Nothing()
-        if numbers.slit is not None:
-            return numbers.slit.kernel(numbers.case.box.size)
-        held = None if self.domain is None else self.domain.held
-        bodies, tables = with_clearance(numbers.case, numbers.solids, held)
-        self._tables.append(tables)
-        return bodies
 
     def _allocate(self) -> None:
         numbers, threads, d = self.numbers, self.threads, self.numbers.dimension
@@ -225,6 +189,23 @@ class Memory:
         virtual = self.walls.virtual
         return virtual.rates if virtual else np.zeros((2, self.numbers.dimension))
 
+    def put_wall_rates(self, rates: Floats) -> None:
+        """Go on with these `wall_rates`."""
+        self.wall_rates[:] = rates
+
+    @property
+    def faults(self) -> NDArray[np.int64]:
+        """Steps and beads of the first bond that tore, of each thread (threads, 8)."""
+        return self.fluid.taken.faults
+
+    def clear_faults(self) -> None:
+        """Forget bonds that tore."""
+        self.fluid.taken.faults[:] = 0
+
+    def clear_stress(self) -> None:
+        """Set the terms of the stress to 0."""
+        self.fluid.taken.tensor[:] = 0
+
     def fill(self, positions: Floats, velocities: Floats, images: Any = 0) -> None:
         """Write positions, velocities and images (n, d), given by particle number."""
         ids = self.fluid.particles.ident[self.places]
@@ -258,6 +239,30 @@ class Memory:
         positions, velocities, images = (np.empty(row.shape, row.dtype) for row in rows)
         positions[ids], velocities[ids], images[ids] = rows
         return positions, velocities, images
+
+    def ids(self, places: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Numbers of the particles at these places."""
+        ids: NDArray[np.int64] = self.fluid.particles.ident[places]
+        return ids
+
+    @property
+    def numbers_taken(self) -> int:
+        """How many numbers `taken_by_surfaces` gives."""
+        return int(self.fluid.taken.impulse.shape[-1])
+
+    def stress_terms(self) -> NDArray[np.int64]:
+        """Terms of the stress of each strip, kinetic and collisional, at each part of a step."""
+        return self.fluid.taken.tensor.swapaxes(0, 1)
+
+    def taken_by_surfaces(self) -> NDArray[np.int64]:
+        """What surfaces took since the last call, as whole numbers."""
+        taken = self.fluid.taken.impulse.sum(axis=0)
+        self.forget_surfaces()
+        return taken
+
+    def forget_surfaces(self) -> None:
+        """Count anew what surfaces take."""
+        self.fluid.taken.impulse[:] = 0
 
     @property
     def bytes_held(self) -> int:

@@ -3,15 +3,14 @@
 import numpy as np
 
 from mesokit.case.box import slide
-from mesokit.geometry.protocol import exposed, free, leaps, touches
+from mesokit.geometry.protocol import exposed, leaps, touches
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.loops.layout import LANES, QUAD, SCRATCH_ROW, sums_length
-from mesokit.method.mpcd.collision.protocol import collide, contribute
-from mesokit.method.mpcd.engine.cpu.bounce import bounce
+from mesokit.method.mpcd.collision.protocol import collide
+from mesokit.method.mpcd.engine.cpu.bounce import fly_among
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW, lanes_together
 from mesokit.method.mpcd.engine.cpu.physics import has_solid, kind_of_solid
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.records import gather, scatter_add
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     add_values,
@@ -22,7 +21,7 @@ from mesokit.method.mpcd.engine.cpu.strips.rows import (
     store_particle,
     store_scratch,
 )
-from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
+from mesokit.method.mpcd.engine.cpu.strips.terms import brought
 from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.streaming import fall, halfway, vector
 from mesokit.scalar.jit import by_type, optional, scalar
@@ -168,13 +167,8 @@ def bounce_strip(physics, counter, strip, count, left, ident, hits, impulse):
         for j in range(start, marked):
             i = hits[j]
             r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-            a = vector(halfway(physics.field, r, v, physics.timestep), zero)
-            if free(physics.solid, r, v, a, physics.timestep):
-                end, v = fall(r, v, a, physics.timestep)
-            else:
-                m = lane_mass(physics.masses, strip, i, 2 * d)
-                particle = ident[i], m
-                end, v = bounce(physics, physics.timestep, counter, particle, r, v, a, impulse)
+            particle = ident[i], lane_mass(physics.masses, strip, i, 2 * d)
+            end, v = fly_among(physics, counter, particle, r, v, impulse)
             store_particle(strip, i, 0, end + v)
             if leaps(physics.solid, added_scaled(end, -1.0, r)):
                 far |= 1 << part
@@ -200,16 +194,14 @@ def bin_strip(physics, now, strip, cell, ident, terms_rows):
     """
     zero = physics.zero
     d = len(zero)
-    # Positions at t + dt, velocities before the collision at t + dt. Terms are rounded to integers
-    # here, lane by lane, so that later sums have no order.
+    # Lane by lane what each brings (see `brought`), in rows from which sums of cells are made.
     for i in range(LANES):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         m = lane_mass(physics.masses, strip, i, 2 * d)
-        kept, own = contribute(physics.rule, now.counter, (ident[i], 0), m, v, in_cell(r, now.grid))
+        kept, terms, counted = brought(physics, now, ident[i], m, r, v)
         cell[i] = cell_index(r, now.grid)
         store_particle(strip, i, 0, r + kept)
-        counted = tally(physics.energy, m, v)
-        store_scratch(terms_rows, i, terms_of(physics, m, v, own) + counted)
+        store_scratch(terms_rows, i, terms + counted)
 
 
 @scalar

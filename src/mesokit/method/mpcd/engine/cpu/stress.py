@@ -3,10 +3,11 @@
 Whole numbers, `scale` of which are one unit of m v^2: the sums do not depend on their order.
 """
 
+from mesokit.case.box import peculiar
 from mesokit.scalar.fixed_point import add_quanta
 from mesokit.scalar.intrinsics import floor  # noqa: F401  the text of a function below uses it
 from mesokit.scalar.jit import elementwise, scalar
-from mesokit.scalar.vector import products, scaled
+from mesokit.scalar.vector import added, products, scaled
 
 
 @scalar
@@ -16,6 +17,12 @@ def flux(m, c, u, x):
     `x` is given in cells from anywhere on the grid.
     """
     return products(scaled(m, c), c) + products(scaled(m, u), within_cell(x))
+
+
+@scalar
+def carried(box, grid, m, r, v):
+    """The same of a particle at r with the velocity v, for the cells of this grid."""
+    return flux(m, peculiar(box, r, v), v, added(r, grid.shift))
 
 
 @scalar

@@ -6,7 +6,7 @@ Blocks are shared out among the threads in order; each thread adds to cell sums 
 
 import numpy as np
 
-from mesokit.case.box import at_time, peculiar
+from mesokit.case.box import at_time
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, SCRATCH_ROW, groups_in, lanes_in, share, strip_at, strips_in
 from mesokit.method.mpcd.engine.beads.molecules import Batch, fly_molecules
@@ -15,14 +15,14 @@ from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.physics import field_of, of_particles
-from mesokit.method.mpcd.engine.cpu.stress import flux
+from mesokit.method.mpcd.engine.cpu.stress import carried
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
 from mesokit.method.mpcd.engine.domains.messages.migrate import note_migrants
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
 from mesokit.scalar.jit import by_type, seldom
-from mesokit.scalar.vector import added, products
+from mesokit.scalar.vector import products
 
 
 @by_type
@@ -155,6 +155,5 @@ def add_strip_flux(physics, box, grid, strip, count, tensor):
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         m = lane_mass(physics.masses, strip, i, 2 * d)
-        carried = flux(m, peculiar(box, r, v), v, added(r, grid.shift))
-        sums = added_fixed(carried, physics.stress_scale, sums)
+        sums = added_fixed(carried(box, grid, m, r, v), physics.stress_scale, sums)
     add_fixed(tensor, count, sums)

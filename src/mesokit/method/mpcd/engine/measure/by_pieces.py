@@ -86,7 +86,7 @@ class ByPieces:
         readings = self.readings
         for molecules in self._molecules(self.beads) if first < self.n else ():
             places = molecules.ravel()
-            ids = self.memory.fluid.particles.ident[places]
+            ids = self.memory.ids(places)
             inside = (ids >= first) & (ids < last)
             places, ids = places[inside], ids[inside]
             yield Some(ids, *readings.seen_at(places, False), readings.masses(ids))
@@ -109,7 +109,7 @@ class ByPieces:
         links = np.array(molecule.bonds if molecule else (), np.int64).reshape(-1, 2)
         own = len(links) * (self.n // self.beads)
         for molecules in self._molecules(max(self.beads, len(links))) if kind.start < own else ():
-            numbers = self.memory.fluid.particles.ident[molecules[:, 0]] // self.beads * len(links)
+            numbers = self.memory.ids(molecules[:, 0]) // self.beads * len(links)
             separations = self._between(self._seen(molecules), links)
             yield (numbers[:, None] + np.arange(len(links))).ravel(), separations
         if kind.stop > own and solutes is not None:

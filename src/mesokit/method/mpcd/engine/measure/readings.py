@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import SLIDING
 from mesokit.loops.layout import LANES, SCRATCH_ROW, strips_for, sums_length, zeros
-from mesokit.loops.threads import Threads
 from mesokit.method.mpcd.engine.beads.readings import SoluteReadings
-from mesokit.method.mpcd.engine.cpu.memory import Floats, Memory
+from mesokit.method.mpcd.engine.cpu.memory import Floats
 from mesokit.method.mpcd.engine.measure import sums as measure
 from mesokit.scalar.fixed_point import ROUNDER_BITS, added_halves, halves, joined
 from mesokit.statistics import Tally
@@ -31,12 +30,12 @@ class Observed(NamedTuple):
 class Readings:
     """Readings of a fluid in memory, by all threads together."""
 
-    def __init__(self, memory: Memory, threads: Threads) -> None:
+    def __init__(self, memory: Any, threads: Any = None) -> None:
         self.memory, self.numbers, self.threads = memory, memory.numbers, threads
         numbers = memory.numbers
         self.n, self.beads, self.dimension = numbers.n, numbers.beads, numbers.dimension
         self.wall_steps = 0  # since the warm-up
-        self._walls = Tally((memory.fluid.taken.impulse.shape[-1],), self.numbers.units["momentum"])
+        self._walls = Tally((memory.numbers_taken,), self.numbers.units["momentum"])
         self._asked: NDArray | None = None  # ids, for the next time
         self._slots_of_asked = np.zeros(0, np.int32)
         self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
@@ -87,10 +86,6 @@ class Readings:
         """Sums over all ranks, from their halves (see `total`), over the scale."""
         return joined(self.reduced(parts), scale)
 
-    def added(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Whole numbers that the threads have found together."""
-        return self.reduced(numbers.sum(axis=0))
-
     def reduced(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
         """The sum over all ranks; here there is one."""
         return numbers
@@ -132,12 +127,16 @@ class Readings:
         particles or of those from one number to before another."""
         turns = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
         d, scale = self.dimension, self.numbers.units["momentum"]
-        waves = measure.Waves(turns, scale, first, self.n if last is None else last)
-        part = np.zeros((self.threads.size, len(turns), 2 + 2 * d), np.int64)
-        where = self.memory.box, self.memory.fluid.particles
-        self.threads.run(measure.modes, *self._vectors, *where, waves, part)
-        total = self.added(part) / scale
+        sums = self._wave_sums(turns, scale, first, self.n if last is None else last)
+        total = self.reduced(sums) / scale
         return total[:, 0] + 1j * total[:, 1], total[:, 2 : 2 + d] + 1j * total[:, 2 + d :]
+
+    def _wave_sums(self, turns: Floats, scale: float, first: int, last: int) -> NDArray[np.int64]:
+        """The same here, as whole numbers (K, 2 + 2 d)."""
+        part = np.zeros((self.threads.size, len(turns), 2 + 2 * self.dimension), np.int64)
+        waves, where = measure.Waves(turns, scale, first, last), self.memory.fluid.particles
+        self.threads.run(measure.modes, *self._vectors, self.memory.box, where, waves, part)
+        return part.sum(axis=0)
 
     def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
         """Positions (n, d) by particle id, in the box or as if it had no bounds."""
@@ -281,7 +280,7 @@ class Readings:
         """
         d = self.dimension
         unit = self.numbers.units["stress"]
-        parts = self.total(self.memory.fluid.taken.tensor.swapaxes(0, 1), unit)
+        parts = self.total(self.memory.stress_terms(), unit)
         if self.solutes is not None:
             theirs = self.total(self.solutes.state_of.tensor.swapaxes(0, 1), unit)
             bonded = theirs[2:] + parts[2:] if len(parts) > 2 else theirs[2:]
@@ -301,14 +300,12 @@ class Readings:
 
         These for the lower and upper plate of a slit, or for the bodies in order, all in a row.
         """
-        counts = self.memory.fluid.taken.impulse
-        self._walls.add(self.added(counts))
-        counts[:] = 0
+        self._walls.add(self.reduced(self.memory.taken_by_surfaces()))
         return self._walls
 
     def restore_walls(self, state: Mapping[str, NDArray]) -> None:
         """Go on with what surfaces took from the state of an engine."""
-        self.memory.fluid.taken.impulse[:] = 0
+        self.memory.forget_surfaces()
         self._walls.restore({name: state[f"walls/{name}"] for name in self._walls.state()})
         self.wall_steps = int(state["wall_steps"])
 
@@ -324,7 +321,7 @@ class Readings:
 
     def forget_walls(self) -> None:
         """Count anew what surfaces take."""
-        self.memory.fluid.taken.impulse[:] = 0
+        self.memory.forget_surfaces()
         self._walls = Tally(self._walls.high.shape, self._walls.unit)
         self.wall_steps = 0
 

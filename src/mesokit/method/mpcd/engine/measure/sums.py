@@ -51,11 +51,19 @@ def totals(worker, masses, particles, scales, out, fastest):
             m = lane_mass(masses, strip, i, 2 * d)
             momentum = added_quanta(scaled(m, v), scales[0], momentum)
             energy += quanta(m * dot(v, v), scales[d])
-            for k in range(d):
-                top = max(top, bits(abs(v[k])))
+            top = max(top, largest_bits(v))
         add_integers(out[b], momentum + (energy,))
         largest = from_bits(top)
         fastest[b] = largest if largest == largest else math.inf
+
+
+@scalar
+def largest_bits(v):
+    """The bits of the largest component of |v|: whole numbers in the same order, NaN at the top."""
+    top = np.int64(0)
+    for k in range(len(v)):
+        top = max(top, bits(abs(v[k])))
+    return top
 
 
 class Bins(NamedTuple):
@@ -89,15 +97,27 @@ def bin_sums(worker, zero, masses, box, particles, bins, sums):
             r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
             r, v, _ = fold(box, r, v, scaled(0.0, zero))
             m = lane_mass(masses, strip, i, 2 * d)
-            index = 0.0
-            for k in range(2):
-                axis, number = bins.axes[k], bins.number[k]
-                x = floor(r[axis] / box.size[axis] * number)
-                x = x if x > 0.0 else 0.0  # also of a place that is no number
-                index = index * number + (x if x < number else number - 1.0)
-            place[i] = np.int32(index)
-            store_scratch(quanta, i, rounded(scaled(m, v) + (m, m * dot(v, v)), scales))
+            place[i] = np.int32(bin_at(bins.axes, bins.number, box, r))
+            store_scratch(quanta, i, rounded(moments_of(m, v), scales))
         add_strip(place, quanta, out, lanes_in(filling, b), terms, ())
+
+
+@scalar
+def bin_at(axes, number, box, r):
+    """The bin of a place in the box, as a float; those of the second axis vary fastest."""
+    index = 0.0
+    for k in range(2):
+        axis = axes[k]
+        x = floor(r[axis] / box.size[axis] * number[k])
+        x = x if x > 0.0 else 0.0  # also of a place that is no number
+        index = index * number[k] + (x if x < number[k] else number[k] - 1.0)
+    return index
+
+
+@scalar
+def moments_of(m, v):
+    """Momentum (d), mass and m v^2."""
+    return scaled(m, v) + (m, m * dot(v, v))
 
 
 class Waves(NamedTuple):
@@ -136,12 +156,17 @@ def modes(worker, zero, masses, box, particles, waves, out):
                 m = lane_mass(masses, strip, i, 2 * d)
                 number = particles.ident[b * LANES + i]
                 m = m if i < lanes and waves.first <= number < waves.last else 0.0
-                phase = dot(wave, r)
-                s, c = sincos_turn(phase - floor(phase))
-                c, s = m * c, -m * s
-                values = (c, s) + scaled(c, v) + scaled(s, v)
-                sums = added_fixed(values, waves.scale, sums)
+                sums = added_fixed(part_in_wave(wave, m, r, v), waves.scale, sums)
             add_fixed(out[worker.thread, w], LANES, sums)
+
+
+@scalar
+def part_in_wave(wave, m, r, v):
+    """Mass times cosine and minus sine, then the same of each component of the momentum."""
+    phase = dot(wave, r)
+    s, c = sincos_turn(phase - floor(phase))
+    c, s = m * c, -m * s
+    return (c, s) + scaled(c, v) + scaled(s, v)
 
 
 class Looked(NamedTuple):

@@ -5,9 +5,10 @@
 import numpy as np
 
 from mesokit.loops.layout import sums_length
-from mesokit.method.mpcd.collision.protocol import Cell
+from mesokit.method.mpcd.collision.protocol import Cell, contribute
+from mesokit.method.mpcd.engine.cpu.grid import in_cell
 from mesokit.method.mpcd.engine.cpu.physics import field_of
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import Column, energy_term, untangled
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import Column, energy_term, tally, untangled
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
 from mesokit.scalar.fixed_point import from_fixed, integers, rounded
 from mesokit.scalar.jit import by_type, elementwise, scalar
@@ -43,6 +44,18 @@ def terms_of(physics, m, v, own):
     """The terms of a particle in the sums of its cell; `own` are those of the collision rule."""
     terms = scaled(m, v) + _mass_term(physics.masses, m) + energy_term(physics.energy, m, v) + own
     return rounded(terms, physics.scales)
+
+
+@scalar
+def brought(physics, now, number, m, r, v):
+    """What a particle brings to the cell that it is in: the velocity that it keeps until it
+    collides, its terms in the sums, and that in the integer that counts (see `tally`).
+
+    Positions at t + dt, velocities before the collision at t + dt. Terms are rounded to integers
+    here, one by one, so that later sums have no order.
+    """
+    kept, own = contribute(physics.rule, now.counter, (number, 0), m, v, in_cell(r, now.grid))
+    return kept, terms_of(physics, m, v, own), tally(physics.energy, m, v)
 
 
 @by_type

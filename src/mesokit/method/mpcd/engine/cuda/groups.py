@@ -1,0 +1,31 @@
+"""Addresses of a fluid in the memory of a device, as kernels take them.
+
+Each row has a number for every particle. Rows are apart, so that a sort can put any of them in the
+place of another. Sums and coefficients are records: all numbers of a cell lie side by side.
+"""
+
+from typing import Any, NamedTuple
+
+
+class Kinds(NamedTuple):
+    """Of particles that differ in mass: numbers where each kind ends (int64), masses (float64)."""
+
+    ends: int
+    masses: int
+
+
+class Fluid(NamedTuple):
+    """A fluid's arrays."""
+
+    r: tuple  # rows of positions along each axis, float64
+    v: tuple  # and of velocities
+    image: tuple  # rows of the boxes that each particle is away, int32
+    ident: int  # number of each particle, int32
+    kinds: Any  # Kinds, or () where all masses are the same
+    coefficients: int  # records of cells: what their particles need to collide, float64
+    sums: int  # records of cells: fixed-point sums over their particles, int64
+    neighbour_sums: tuple  # one of these sums in all cells, if the rule needs its gradient, or ()
+    impulse: int  # momentum and angular momentum that surfaces took, int64
+    listed: int  # particles whose flight may meet a surface, int32
+    waiting: int  # how many are listed, int32
+    tensor: tuple  # terms of the stress before and after the collision, int64, where it is measured

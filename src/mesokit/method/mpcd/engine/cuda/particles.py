@@ -1,0 +1,145 @@
+"""What one thread does for a particle in a step: collide, fly, and bring its part to its cell.
+
+Time levels are those of the CPU's sweep: the pending collision at t, the flight from t to t + dt,
+the sums of the cells at t + dt.
+"""
+
+import numpy as np
+
+from mesokit.case.box import fold, slide
+from mesokit.devices.device import BLOCK
+from mesokit.geometry.protocol import touches
+from mesokit.geometry.solids.bodies import Bodies, cube_of
+from mesokit.loops.layout import record_length, sums_length
+from mesokit.method.mpcd.collision.protocol import collide
+from mesokit.method.mpcd.engine.cpu.bounce import fly_among
+from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
+from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
+from mesokit.method.mpcd.engine.cpu.physics import field_of, has_solid
+from mesokit.method.mpcd.engine.cpu.stress import carried
+from mesokit.method.mpcd.engine.cpu.strips.terms import brought
+from mesokit.method.mpcd.engine.cuda.rows import (
+    count_crossed,
+    load_row,
+    mass_of,
+    store_row,
+    uniform_scales,
+    whole_numbers,
+)
+from mesokit.method.mpcd.streaming import fall, halfway, vector
+from mesokit.scalar.fixed_point import rounded
+from mesokit.scalar.jit import by_type, optional, scalar
+from mesokit.scalar.pointer import add_words, put_whole, reals, short, take_number, whole
+from mesokit.scalar.vector import scaled
+
+
+@by_type
+def sweep(i, physics, now, fluid):
+    """The pending collision, the flight, and what the particle brings to its next cell.
+
+    Among solids a particle that may meet one is only put on a list: its flight has code of its own
+    (`bounce_listed`), which would take registers from all others here.
+    """
+    return _sweep_among if has_solid(physics) else _sweep_freely
+
+
+def _sweep_freely(i, physics, now, fluid):
+    r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
+    v = collided(i, physics, now, fluid, r, v)
+    if now.flags & STREAM:
+        r, v = fall(r, v, halfway(physics.field, r, v, physics.timestep), physics.timestep)
+        v = bring(i, physics, now, fluid, r, v)
+    store_row(fluid.v, i, v)
+
+
+def _sweep_among(i, physics, now, fluid):
+    r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
+    v = collided(i, physics, now, fluid, r, v)
+    if now.flags & STREAM:
+        a = halfway(physics.field, r, v, physics.timestep)
+        clear = around(physics.solid, r)
+        if touches(physics.solid, clear, r, v, vector(a, r), physics.timestep):
+            put_whole(fluid.listed, take_number(fluid.waiting, 0, 1), i)
+        else:
+            r, v = fall(r, v, a, physics.timestep)
+            v = bring(i, physics, now, fluid, r, v)
+    store_row(fluid.v, i, v)
+
+
+@scalar
+def collided(i, physics, now, fluid, r, v):
+    """Velocity after the pending collision, if there is one."""
+    if now.flags & COLLIDE:
+        start = np.int64(cell_index(r, now.old)) * record_length(len(physics.coefficients))
+        needed = reals(fluid.coefficients, start, physics.coefficients)
+        v = collide(physics.rule, needed, v, in_cell(r, now.old))
+        if not now.flags & STREAM:
+            add_stress(i, physics, now, now.old, fluid, 1, r, v)
+    return v
+
+
+@by_type
+def around(solid, r):
+    """Square of the distance that is surely clear around a place: (d,) if it is in tables."""
+    if solid.instance_class is not Bodies:
+        return lambda solid, r: ()
+
+    def looked_up(solid, r):
+        stride = np.float32(solid.stride * solid.stride)
+        return (min(stride, np.float32(short(solid.clear, np.int64(cube_of(solid, r))))),)
+
+    return looked_up
+
+
+@scalar
+def bounce_listed(j, physics, now, fluid):
+    """The same flight for the jth of the list, with reflections."""
+    if j < whole(fluid.waiting, 0):
+        i = whole(fluid.listed, j)
+        r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
+        number = whole(fluid.ident, i)
+        particle = number, mass_of(physics, fluid.kinds, number)
+        r, v = fly_among(physics, now.counter, particle, r, v, fluid.impulse)
+        store_row(fluid.v, i, bring(i, physics, now, fluid, r, v))
+
+
+@scalar
+def bring(i, physics, now, fluid, r, v):
+    """Store the place, add the particle to the sums of its cell; the velocity that it keeps."""
+    r, v, crossed = slide(now.box, r, v, now.grid.shift)
+    count_crossed(fluid.image, i, crossed)
+    add_stress(i, physics, now, now.grid, fluid, 0, r, v)
+    number = whole(fluid.ident, i)
+    m = mass_of(physics, fluid.kinds, number)
+    kept, terms, counted = brought(physics, now, number, m, r, v)
+    start = np.int64(cell_index(r, now.grid)) * sums_length(len(physics.terms))
+    add_words(fluid.sums, start, (np.int64(optional(counted, 1)),) + terms)
+    store_row(fluid.r, i, r)
+    return kept
+
+
+@by_type
+def add_stress(i, physics, now, grid, fluid, part, r, v):
+    """The part of a particle in the stress, to the row of its block (rows, 2 d^2), at the step of
+    which it is measured; `part` is 0 before the collision and 1 after it."""
+    if len(field_of(fluid, "tensor")) == 0:
+        return lambda i, physics, now, grid, fluid, part, r, v: None
+
+    def add(i, physics, now, grid, fluid, part, r, v):
+        if now.flags & MEASURE_STRESS:
+            m = mass_of(physics, fluid.kinds, whole(fluid.ident, i))
+            flux = carried(now.box, grid, m, r, v)
+            terms = whole_numbers(rounded(flux, uniform_scales(physics.stress_scale, flux)))
+            add_words(fluid.tensor[part], i // BLOCK * len(terms), terms)
+
+    return add
+
+
+@scalar
+def wrap(i, physics, now, fluid):
+    """Move a particle to its image in the box, and count the boxes that it crossed."""
+    r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
+    r, v, crossed = fold(now.box, r, v, scaled(0.0, r))
+    store_row(fluid.r, i, r)
+    store_row(fluid.v, i, v)
+    count_crossed(fluid.image, i, crossed)

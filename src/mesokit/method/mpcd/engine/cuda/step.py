@@ -1,0 +1,66 @@
+"""The step on a device: its stages in order, each a launch of as many threads as it has things."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.devices.device import words_of
+from mesokit.method.mpcd.engine.cpu.groups import Course
+from mesokit.method.mpcd.engine.cuda.cells import collide_cell, fill_neighbour_sum
+from mesokit.method.mpcd.engine.cuda.launch import StepKernel
+from mesokit.method.mpcd.engine.cuda.memory import WHOLE, DeviceMemory
+from mesokit.method.mpcd.engine.cuda.particles import bounce_listed, sweep
+from mesokit.method.mpcd.engine.cuda.plan import Plan
+
+Row = NDArray[np.uint64]
+
+
+class Steps:
+    """The kernels of a case's steps, and their order."""
+
+    def __init__(self, memory: DeviceMemory, course: Course) -> None:
+        self.memory, self.device = memory, memory.device
+        self._all: list[StepKernel] = []
+        self.plan = Plan(memory.physics, memory.physics_there, course)
+        physics = memory.physics_there._replace(field=self.plan.field)
+        of_cells = physics._replace(field=(), solid=(), molecule=())
+        self._sweep = self._of_step(sweep, physics, memory.fluid)
+        self._collide = self._of_step(collide_cell, of_cells, memory.fluid)
+        self.among_solids = memory.numbers.solids is not None
+        if self.among_solids:
+            self._bounce = self._of_step(bounce_listed, physics, memory.fluid)
+        if memory.fluid.neighbour_sums:
+            self._sums = words_of(memory.number_of_cells, of_cells, memory.fluid)
+            self._fill = self.device.kernel(fill_neighbour_sum, (of_cells, memory.fluid))
+
+    def _of_step(self, body: Any, physics: Any, *more: Any) -> StepKernel:
+        made = StepKernel(self.device, body, physics, self.plan, *more)
+        self._all.append(made)
+        return made
+
+    def take_rows(self) -> None:
+        """Go on with the rows of particles as they lie after a sort."""
+        fluid = self.memory.fluid
+        for kernel in self._all:
+            kernel.take(fluid)
+
+    def run(self, course: Course) -> None:
+        """Some steps, and the collision of the last."""
+        rows = self.plan.rows(course)
+        for n in range(course.steps):
+            self.step(rows[n])
+        if course.steps:
+            self._sweep(self.memory.n, rows[-1])  # v: the collision at the end
+
+    def step(self, row: Row) -> None:
+        """One collision interval: r, v from t to t + dt."""
+        memory = self.memory
+        if self.among_solids:
+            self.device.clear(memory.fluid.waiting, WHOLE)
+        self._sweep(memory.n, row)  # v: the collision at t; r, v: t -> t + dt; sums
+        if self.among_solids:
+            self._bounce(memory.n, row)  # the same for those that may meet a surface
+        if memory.fluid.neighbour_sums:
+            self.device.launch(self._fill, self._sums)  # sums for gradients over neighbours
+        self._collide(memory.number_of_cells, row)  # thermostat, rule at t + dt: coefficients

@@ -1,0 +1,44 @@
+"""Tables of the physics in the memory of a device.
+
+Parameters have addresses of tables (see `scalar.pointer`), and some tables have addresses of
+others. Each is copied once, and its address replaced wherever it stands.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.devices.device import Device
+from mesokit.scalar.pointer import table_at
+
+
+class Tables:
+    """Copies of tables on a device, by their addresses here."""
+
+    def __init__(self, device: Device) -> None:
+        self._device = device
+        self._there: dict[int, int] = {}
+        self._held: list[NDArray[Any]] = []  # no other table can come to their addresses
+        self.bytes_held = 0
+
+    def there(self, value: Any) -> Any:
+        """Parameters with the addresses of copies on the device."""
+        if isinstance(value, tuple):
+            parts = [self.there(part) for part in value]
+            return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+        if not isinstance(value, (int, np.integer)) or (table := table_at(int(value))) is None:
+            return value
+        if int(value) not in self._there:
+            self._there[int(value)] = self._copied(table)
+        return self._there[int(value)]
+
+    def _copied(self, table: NDArray[Any]) -> int:
+        self._held.append(table)
+        if table.dtype == np.int64:  # these may be addresses
+            places = [self.there(place) for place in table.ravel().tolist()]
+            table = np.array(places, np.int64)
+        address = self._device.allocate(table.nbytes)
+        self._device.write(address, table)
+        self.bytes_held += table.nbytes
+        return address
