@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mesokit.cli.commands import CASE, JSON, SET, THREADS, axes_of, cli, naming, read
+from mesokit.cli.commands import CASE, DEVICE, JSON, SET, THREADS, axes_of, cli, naming, read
 from mesokit.cli.words import READING, in_json, patience, show_table
+from mesokit.devices.named import CPU, require_name
 from mesokit.errors import CaseError
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 @click.argument("case", type=CASE)
 @SET
 @THREADS
+@DEVICE
 @JSON
 @click.option(
     "--picture",
@@ -32,14 +34,18 @@ def check(
     case: Path,
     settings: dict[str, str],
     threads: int | None,
+    device: str,
     as_json: bool,
     picture: str | None,
     axes: tuple[str, ...] | None,
 ) -> None:
-    """Check CASE. Print it with all defaults, its derived numbers and its warnings."""
+    """Check CASE. Print it with all defaults, its derived numbers and its warnings.
+
+    With --device cuda, also what it takes on common cards; no card is needed for that.
+    """
     from mesokit.case.kind import has_run
     from mesokit.case.warnings import has_memory
-    from mesokit.seam.method import method_of, summary_of
+    from mesokit.seam.method import method_of, on_devices, summary_of
 
     with patience(READING):
         full = read(case, settings)
@@ -50,6 +56,10 @@ def check(
                 full = method.initial.prepared(full, {})
                 method.initial.read(full, {})
             summary = summary_of(full, threads)
+    if require_name(device) != CPU:
+        with naming(case):
+            rows = on_devices(full, device, 1).rows(full)
+        summary = summary._replace(rows=(*summary.rows, *rows))
     if axes is not None and picture is None:
         raise CaseError("--axes: only for a picture; add --picture")
     drawn = None if picture is None else _draw(full, case, picture, axes)

@@ -18,6 +18,7 @@ from mesokit import __version__
 from mesokit.cli.completion import keys
 from mesokit.cli.together import take_part
 from mesokit.cli.words import frames_of_parts
+from mesokit.devices.named import CPU
 from mesokit.errors import CaseError, RunError
 
 if TYPE_CHECKING:
@@ -133,6 +134,12 @@ SET = click.option(
     help="Replace a value of the case, such as fluid.density=5. May be repeated.",
 )
 JSON = click.option("--json", "as_json", is_flag=True, help="All of it as JSON, for scripts.")
+DEVICE = click.option(
+    "--device",
+    default=CPU,
+    metavar="NAME",
+    help="cpu, or cuda for a card of NVIDIA: the same bits.  [cpu]",
+)
 THREADS = click.option("--threads", type=click.IntRange(1), help="Threads (all cores unless said).")
 
 

@@ -8,6 +8,7 @@ import click
 
 from mesokit.cli.commands import (
     CASE,
+    DEVICE,
     FILE,
     FORMATS,
     JSON,
@@ -24,6 +25,7 @@ from mesokit.cli.commands import (
 from mesokit.cli.end import show_results, stopping
 from mesokit.cli.together import on_ranks
 from mesokit.cli.words import READING, in_json, patience, say
+from mesokit.devices.named import CPU
 from mesokit.errors import CaseError
 from mesokit.processes.world import world
 
@@ -34,6 +36,7 @@ NOT_REACHED = 3  # exit status of a run that ended before an error was small eno
 @click.argument("case", type=CASE)
 @SET
 @THREADS
+@DEVICE
 @click.option("--seed", type=click.IntRange(0), help="Replace run.seed.")
 @click.option("--seeds", type=click.IntRange(1), help="So many runs, and their pooled results.")
 @click.option("--output", type=RUN, help="Folder of the run (the name of CASE unless said).")
@@ -44,6 +47,7 @@ def run(
     case: Path,
     settings: dict[str, str],
     threads: int | None,
+    device: str,
     seed: int | None,
     seeds: int | None,
     output: Path | None,
@@ -73,6 +77,10 @@ def run(
             )
         if here.size > 1:
             raise CaseError(f"--seeds: not on {here.size} ranks; expected one process")
+        if device != CPU:
+            raise CaseError(
+                f"--device {device}: not with --seeds; expected run.replicas in the case"
+            )
         given = {"settings": settings, "threads": threads, "quiet": quiet}
         return run_seeds(case, seeds, output, given)
     with patience(READING, quiet):
@@ -84,7 +92,7 @@ def run(
     from mesokit.run.simulation import Simulation
 
     with naming(case):
-        simulation = Simulation(full, threads=threads)
+        simulation = Simulation(full, threads=threads, device=device)
     here.on_root(lambda: _clear(output))  # only now: what cannot start costs no earlier run
     simulation.write_to(output)
     with stopping(f"mesokit resume {output}"):
@@ -103,10 +111,16 @@ def run(
     "velocity-profile.viscosity=1%; then --steps is the limit.",
 )
 @THREADS
+@DEVICE
 @click.option("--quiet", is_flag=True, help="No progress, no summary; errors only.")
 @on_ranks(lambda given: given["run"])
 def resume(
-    run: Path, steps: int | None, until_error: str | None, threads: int | None, quiet: bool
+    run: Path,
+    steps: int | None,
+    until_error: str | None,
+    threads: int | None,
+    device: str,
+    quiet: bool,
 ) -> None:
     """Go on with RUN from its last checkpoint, to the same bits as if it had never stopped.
 
@@ -122,7 +136,7 @@ def resume(
 
     longer = None if until_error else steps
     with stopping(f"mesokit resume {run}"):
-        simulation = Simulation.resume(run, threads=threads, steps=longer)
+        simulation = Simulation.resume(run, threads=threads, steps=longer, device=device)
         if not (quiet or RunDirectory(run).checkpoint_file.exists()):
             say(f"{run}: no checkpoint yet; starting from step 0")
         limit = None

@@ -24,13 +24,13 @@ PACKAGE = Path(__file__).parents[1]
 SECONDS = 5  # for git to answer
 
 
-def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
+def provenance(case: Case, threads: int, ranks: int = 1, device: str = "cpu") -> dict[str, Any]:
     """Record of a run at its start: case, versions, host, time.
 
     `sources` is the state of mesokit, `starts_from` that of files and runs of the first state.
     `units` has reduced units in SI, None without them in the case; `parts` are classes from outside
-    mesokit. `threads` are those of each rank. Later `ended`, `failed` (the reason), `timings` (of
-    rank 0) and `shared_work` (of several ranks) are filled in.
+    mesokit. `threads` are those of each rank, `device` is what the steps run on. Later `ended`,
+    `failed` (the reason), `timings` (of rank 0) and `shared_work` (of several ranks) are filled in.
     """
     return {
         **recorded_case(case),
@@ -45,7 +45,7 @@ def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
         "cores": os.cpu_count(),
         "threads": threads,
         "ranks": ranks,
-        "device": "cpu",
+        "device": device,
         "command": sys.argv,
         "started": now(),
         "resumed": [],

@@ -42,9 +42,9 @@ class Folder:
             kept = case.particles_have("diameter"), ranks.root
             self.writer = TrajectoryWriter(case.trajectory, folder, number, first, *kept)
 
-    def begin(self, threads: int) -> None:
+    def begin(self, threads: int, device: str) -> None:
         """Write the record at the begin of a run."""
-        origin = provenance(self.case, threads, self.ranks.size)
+        origin = provenance(self.case, threads, self.ranks.size, device)
         self.ranks.on_root(lambda: self.directory.write_provenance(origin))
 
     # --- while it goes on -----------------------------------------------------------------------
@@ -106,7 +106,7 @@ class Folder:
 
         self.ranks.on_root(forget)
 
-    def go_on(self, replicas: Replicas, threads: int) -> None:
+    def go_on(self, replicas: Replicas, threads: int, device: str) -> None:
         """Let log and record go on, or begin if the run had not begun."""
         step, last = replicas.step, self.case.run.warmup + self.case.run.steps
 
@@ -115,10 +115,11 @@ class Folder:
                 self._take_back()
             self.log.resume(step)
             ranks = self.ranks.size
-            record = _earlier(self.directory) or provenance(self.case, threads, ranks)
+            record = _earlier(self.directory) or provenance(self.case, threads, ranks, device)
             begun = replicas.looked or step > 0
             resumed = [*record.get("resumed", []), *[now()] * begun]
-            own = {"resumed": resumed, "threads": threads, "ranks": ranks, "failed": None}
+            own = {"resumed": resumed, "threads": threads, "ranks": ranks, "device": device}
+            own["failed"] = None
             self.directory.write_provenance(record | recorded_case(self.case) | own)
 
         self.ranks.on_root(write)

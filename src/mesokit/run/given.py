@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 from mesokit.case import methods
 from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, show
+from mesokit.devices.device import Device
+from mesokit.devices.named import CPU, opened, require_name
 from mesokit.errors import CaseError
 from mesokit.processes.cores import usable_cores, which_cores
 from mesokit.processes.world import World
 from mesokit.run.callbacks import Callbacks
-from mesokit.seam.method import method_of
+from mesokit.seam.method import method_of, on_devices
 
 MOST_THREADS = 1024
 PIECE = 2**18  # rows
@@ -53,6 +55,17 @@ def threads_of(given: Any, here: World, case: Case) -> int:
     if whole and 1 <= int(given) <= MOST_THREADS:
         return int(given)
     raise CaseError(f"threads = {show(given)}: expected a whole number from 1 to {MOST_THREADS}")
+
+
+def device_of(given: Any, case: Case, ranks: int) -> Device | None:
+    """The device of a name, None for the threads of a processor.
+
+    Raises CaseError where the case cannot run on it, RunError where there is none.
+    """
+    if require_name(given) == CPU:
+        return None
+    on_devices(case, given, ranks)
+    return opened(given)
 
 
 def require_ranks(case: Case, ranks: int) -> None:

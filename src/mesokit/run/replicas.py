@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mesokit.case.case import Case
+from mesokit.devices.device import Device
 from mesokit.errors import RunError
 from mesokit.observe.shared.build_up import result_of
 from mesokit.run.schedule import Leg
@@ -27,10 +28,14 @@ ALIKE = (
 class Replica:
     """One copy: its case with its own seed, its engine and its accumulators."""
 
-    def __init__(self, case: Case, threads: int) -> None:
-        measures = {name for observable in case.observe for name in observable.measures}
-        self.case = case
-        self.engine = method_of(case).engine(case, threads, sorted(measures))
+    def __init__(self, case: Case, threads: int, device: Device | None) -> None:
+        measures = sorted({name for one in case.observe for name in one.measures})
+        self.case, method = case, method_of(case)
+        if device is None:
+            self.engine = method.engine(case, threads, measures)
+        else:
+            assert method.on_devices is not None
+            self.engine = method.on_devices.engine(case, device, measures)
         self.accumulators: dict[str, Accumulator] = {
             observable.label: observable.accumulator(case) for observable in case.observe
         }
@@ -60,15 +65,16 @@ class Replica:
 class Replicas:
     """All copies of a case, which do the same steps at the same time on one or more threads each.
 
-    Bits do not depend on the threads. Results are pooled: blocks of time of all copies stand in a
-    row, so error bars contain the scatter of copies.
+    Those on a device do their steps in turn. Bits do not depend on the threads. Results are pooled:
+    blocks of time of all copies stand in a row, so error bars contain the scatter of copies.
     """
 
-    def __init__(self, case: Case, threads: int) -> None:
+    def __init__(self, case: Case, threads: int, device: Device | None = None) -> None:
         number = case.run.replicas
         each = max(1, threads // number)
-        self.all = [Replica(one, each) for one in copies(case)]
-        self.workers = ThreadPoolExecutor(min(number, threads)) if number > 1 else None
+        self.all = [Replica(one, each, device) for one in copies(case)]
+        together = 1 if device is not None else min(number, threads)
+        self.workers = ThreadPoolExecutor(together) if number > 1 else None
         self.looked = False  # true once the first state of the run has been sampled
 
     @property

@@ -13,6 +13,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import blaming
+from mesokit.devices.named import CPU
 from mesokit.errors import RunError
 from mesokit.io.one_writer import alone
 from mesokit.io.record_words import shared_work
@@ -24,7 +25,7 @@ from mesokit.report.progress import Reporter
 from mesokit.run import pictures
 from mesokit.run.callbacks import Callback, Callbacks
 from mesokit.run.folder import Folder, existing, note_failed
-from mesokit.run.given import case_and_arrays, given_facts, require_ranks, threads_of
+from mesokit.run.given import case_and_arrays, device_of, given_facts, require_ranks, threads_of
 from mesokit.run.log import RunLog
 from mesokit.run.loop import Loop
 from mesokit.run.replicas import Replicas
@@ -47,6 +48,9 @@ class Simulation(Shown):
         Folder to write to; nothing is written without it.
     threads : int, optional
         Threads to use (all cores unless said). Results do not depend on it.
+    device : str, optional
+        "cpu", or "cuda" for a card of NVIDIA ("cuda:1" for the second one), with the same bits; see
+        the guide on GPUs. "emulated" and "host" show these bits without a card, slowly.
     positions, velocities, beads, bead_velocities : array (n, d), optional
         Start from these, by particle number, in cells and cells per unit of time; another method
         of simulation than MPCD may have arrays of other names.
@@ -75,6 +79,7 @@ class Simulation(Shown):
         *,
         output: str | Path | None = None,
         threads: int | None = None,
+        device: str = CPU,
         callbacks: Sequence[Callback] = (),
         **parts: Any,
     ) -> None:
@@ -86,17 +91,18 @@ class Simulation(Shown):
         self.ranks.require_same(lambda: given_facts(self.case, self.callbacks, arrays) | facts)
         with blaming(self.case):
             self.case = method_of(self.case).initial.prepared(self.case, arrays)
-            self._build()
+            self._build(device)
             self.replicas.start(arrays)
         if output is not None:
             self.write_to(output)
             if arrays:
                 self.checkpoint()
 
-    def _build(self) -> None:
+    def _build(self, device: str) -> None:
         """Make replicas, callbacks, stop and loop."""
         require_ranks(self.case, self.ranks.size)
-        self.replicas = Replicas(self.case, self.threads)
+        self.device = device_of(device, self.case, self.ranks.size)
+        self.replicas = Replicas(self.case, self.threads, self.device)
         self.engine = self.replicas.first.engine
         self.accumulators = self.replicas.first.accumulators
         self.log = RunLog(self.case)
@@ -110,7 +116,7 @@ class Simulation(Shown):
         """Write to this new folder from now on. Raises RunError if it holds something already."""
         directory = self.ranks.on_root(lambda: RunDirectory.create(output, self.case))
         self.case = Case.from_toml(directory.case_file)  # what `resume` will read
-        self._write_in(directory).begin(self.threads)
+        self._write_in(directory).begin(self.threads, self.device_name)
 
     def _write_in(self, directory: RunDirectory) -> Folder:
         """Let the loop write to a folder from now on."""
@@ -124,12 +130,14 @@ class Simulation(Shown):
         threads: int | None = None,
         steps: int | None = None,
         callbacks: Sequence[Callback] = (),
+        device: str = CPU,
     ) -> Simulation:
         """Go on with the run in a folder, from its last checkpoint (or the start, if none).
 
         With `steps` it lasts so many after its warm-up, also if it had ended, to the bits of a run
         that was as long from the start; the case on record is changed. Callbacks are not kept with
-        a run: name them again. A damaged record is a warning, and begun anew.
+        a run: name them again. The device may be another one than before. A damaged record is a
+        warning, and begun anew.
 
         Raises CaseError if it has done more steps than that.
         Raises RunError, CheckpointError if there is none, it is damaged, or another process is
@@ -145,14 +153,19 @@ class Simulation(Shown):
             self.callbacks = Callbacks(callbacks)
             given = {"steps": str(steps)}
             here.require_same(lambda: given_facts(self.case, self.callbacks, {}) | given)
-            self._build()
+            self._build(device)
             folder = self._write_in(directory)
             folder.take_up(self.replicas)
             if steps is not None:
                 self.lengthen(steps)
             self.callbacks.resume(self.step)
-            folder.go_on(self.replicas, self.threads)
+            folder.go_on(self.replicas, self.threads, self.device_name)
             return self
+
+    @property
+    def device_name(self) -> str:
+        """What the steps run on: the name of a card, or "cpu"."""
+        return CPU if self.device is None else self.device.name
 
     @property
     def directory(self) -> RunDirectory | None:

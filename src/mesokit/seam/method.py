@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
@@ -17,6 +17,8 @@ from mesokit.case.amounts import duration_text
 from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.trajectory import Group
+from mesokit.devices.device import Device
+from mesokit.errors import CaseError
 from mesokit.processes.cores import usable_cores
 from mesokit.seam.engine import Engine
 from mesokit.seam.observable import Observable
@@ -29,6 +31,19 @@ E = TypeVar("E")  # engine of a method
 S = TypeVar("S")  # state that it starts from
 Floats = NDArray[np.floating]
 Row = tuple[str, str, str]  # what, its value, and a word on it
+
+
+class OnDevices(NamedTuple):
+    """How a method runs on a device (see `mesokit.devices`).
+
+    `engine` is a function of a case, a device and what observables need measured. `refused` gives a
+    line, key first, for each thing in a case, on so many ranks, that devices cannot do. `rows` are
+    those of `mesokit check` about memory and time on a device.
+    """
+
+    engine: Callable[[Case, Device, Sequence[str]], Engine]
+    refused: Callable[[Case, int], Iterator[str]]
+    rows: Callable[[Case], Sequence[Row]]
 
 
 class Summary(NamedTuple):
@@ -196,6 +211,8 @@ class Method:
         What a case starts from.
     engine : function of a case, a number of threads and what observables need measured
         The engine, with nothing in it yet.
+    on_devices : OnDevices, optional
+        The same on a device; without it, the method runs on processors alone.
     dimensions : sequence of int, optional
         How many axes its box may have (two or three unless said).
     box : sequence of str, optional
@@ -236,6 +253,7 @@ class Method:
     summary: Callable[[Case, int | None], Summary]
     initial: InitialState[Any, Any]
     engine: Callable[[Case, int, Sequence[str]], Engine]
+    on_devices: OnDevices | None = None
     dimensions: tuple[int, ...] = (2, 3)
     box: tuple[str, ...] = ()
     keys: Mapping[str, str] = field(default_factory=dict)
@@ -254,6 +272,17 @@ class Method:
 def method_of(case: Case) -> Method:
     """The method of a case."""
     found: Method = methods.load(case.run.method)
+    return found
+
+
+def on_devices(case: Case, device: str, ranks: int) -> OnDevices:
+    """How the method of a case runs on a device. Raises CaseError where it cannot."""
+    found = method_of(case).on_devices
+    if found is None:
+        method = show(case.run.method)
+        raise CaseError(f"device = {show(device)}: not for run.method = {method}; expected 'cpu'")
+    for line in found.refused(case, ranks):
+        raise CaseError(line)
     return found
 
 

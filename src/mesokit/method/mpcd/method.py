@@ -6,7 +6,7 @@ It imports engines, observables and files, and is loaded by name.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from mesokit.case.box import AXES
 from mesokit.case.case import Case
 from mesokit.case.component import param
 from mesokit.case.describe.hints import Many
+from mesokit.devices.device import Device
 from mesokit.errors import CaseError
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.shape import Wall
@@ -37,7 +38,14 @@ from mesokit.method.mpcd.si import convert
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.processes.world import world
 from mesokit.seam.engine import Engine
-from mesokit.seam.method import Enclosure, InitialState, Method, Steadiness
+from mesokit.seam.method import (
+    Enclosure,
+    InitialState,
+    Method,
+    OnDevices,
+    Row,
+    Steadiness,
+)
 from mesokit.seam.units import CELLS
 
 if TYPE_CHECKING:
@@ -59,6 +67,24 @@ def _engine(case: Case, threads: int, measures: Sequence[str]) -> Engine:
     from mesokit.method.mpcd.engine.domains.engine import Ranks
 
     return Ranks(case, threads, measures, here.comm)
+
+
+def _engine_on(case: Case, device: Device, measures: Sequence[str]) -> Engine:
+    from mesokit.method.mpcd.engine.cuda.engine import CUDA
+
+    return CUDA(case, device, measures)
+
+
+def _refused_on_devices(case: Case, ranks: int) -> Iterator[str]:
+    from mesokit.method.mpcd.engine.cuda.refused import refused
+
+    return refused(case, ranks)
+
+
+def _rows_on_devices(case: Case) -> Sequence[Row]:
+    from mesokit.method.mpcd.engine.cuda.cost import rows
+
+    return rows(case)
 
 
 def _check_ranks(case: Case, ranks: int) -> None:
@@ -145,6 +171,7 @@ METHOD = Method(
         _first_state, _start, ARRAYS, _starts, "fluid.start.run", kept=_keep_files
     ),
     engine=_engine,
+    on_devices=OnDevices(_engine_on, _refused_on_devices, _rows_on_devices),
     expected={
         theory.answers: theory
         for theory in (

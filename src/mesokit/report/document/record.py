@@ -30,7 +30,7 @@ def origin_rows(record: Mapping[str, Any]) -> list[Row]:
         rows.append(("pooled from", str(run["run"]), f"seed {run['seed']}, to step {run['step']}"))
     of_each = ("seed", "threads", "started") if record.get("merged") else ()
     for key in ("seed", "case_digest", "host", "system", "processor", "cores",
-                "threads", "started", "ended", "failed"):  # fmt: skip
+                "threads", "device", "started", "ended", "failed"):  # fmt: skip
         if record.get(key) is not None and key not in of_each:
             rows.append((key.replace("_", " "), str(record[key]), ""))
     for key in ("resumed", "parts"):

@@ -1,0 +1,44 @@
+"""Devices by the names that users give them."""
+
+from typing import Any
+
+from mesokit.case.component import nearest, one_of, show
+from mesokit.devices.device import Device
+from mesokit.errors import CaseError
+
+CPU = "cpu"  # the threads of a processor: no device
+NAMES = (CPU, "cuda", "emulated", "host")
+
+
+def require_name(given: Any) -> str:
+    """The name of a device; "cuda:1" is the second card. Raises CaseError for another."""
+    name, _, number = given.partition(":") if isinstance(given, str) else ("", "", "")
+    if name in NAMES and (not number or (name == "cuda" and number.isdigit())):
+        return str(given)
+    hint = nearest(given, NAMES) if isinstance(given, str) else ""
+    raise CaseError(f"device = {show(given)}: expected {one_of(NAMES)}{hint}")
+
+
+def opened(given: Any) -> Device | None:
+    """The device of a name, ready for kernels; None for the threads of a processor.
+
+    "cuda" is the first card, "emulated" its machine code's text run on the processor, "host" a loop
+    over threads compiled for the processor. The last two are slow: they show that bits are the same
+    where there is no card.
+
+    Raises CaseError for another name, and RunError where there is no such device.
+    """
+    name, _, number = require_name(given).partition(":")
+    if name == "cuda":
+        from mesokit.devices.cuda import Cuda
+
+        return Cuda(int(number or 0))
+    if name == "emulated":
+        from mesokit.devices.emulated import Emulated
+
+        return Emulated()
+    if name == "host":
+        from mesokit.devices.host import Host
+
+        return Host()
+    return None

@@ -1,0 +1,79 @@
+"""What a fluid takes on common cards: memory, and a prediction of the time of its steps.
+
+A particle-step takes the longer of two: its double precision arithmetic, or the traffic of memory.
+The latter is that of positions and velocities, and a time for each word that a particle adds to the
+sums of its cell. Both are known from kernels measured on an H100 and an H200 (docs/inside/gpu.md);
+those of other cards follow from their bandwidths, and were not measured.
+"""
+
+from typing import NamedTuple
+
+from mesokit.case.amounts import duration_text, size_text
+from mesokit.case.case import Case
+from mesokit.loops.layout import record_length, sums_length
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+from mesokit.seam.method import Row
+
+
+class Card(NamedTuple):
+    """A card: bytes of memory, bytes copied in a second, double precision operations in a second,
+    seconds for a word that is added to sums, and whether this was measured."""
+
+    name: str
+    memory: float
+    bandwidth: float
+    arithmetic: float
+    word: float
+    measured: bool
+
+
+CARDS = (
+    Card("A100 80 GB", 80e9, 1.7e12, 4.8e12, 16e-12, False),
+    Card("H100 80 GB", 80e9, 2.9e12, 1.6e13, 12.4e-12, True),
+    Card("H200", 141e9, 4.0e12, 1.6e13, 11e-12, True),
+    Card("RTX 4090", 24e9, 0.9e12, 6.4e11, 14e-12, False),
+    Card("RTX 5090", 32e9, 1.6e12, 8.2e11, 11e-12, False),
+)
+# double precision operations of a particle-step in 3D, counted in machine code
+OPERATIONS = {"srd": 111.0, "at": 205.0, "srd+a": 190.0, "at+a": 310.0}
+MOST_OPERATIONS = 310.0
+IN_2D = 0.6  # times as many
+LAUNCH = 10e-6  # seconds from one launch of a kernel to the next, at least
+REAL, WHOLE = 8, 4  # bytes of a number
+
+
+def memory_of(numbers: Numbers) -> int:
+    """Bytes of a device for the particles and cells of a case, without tables of solids."""
+    d, among_solids = numbers.dimension, numbers.solids is not None
+    row = 2 * d * REAL + d * WHOLE + WHOLE  # positions, velocities, images, number
+    spare = REAL + 2 * WHOLE + WHOLE * among_solids  # of sorts, and the list of flights
+    cell = sums_length(len(numbers.scales)) * REAL
+    cell += record_length(numbers.coefficient_count) * REAL + WHOLE
+    return numbers.n * (row + spare) + numbers.number_of_cells * cell
+
+
+def seconds_of_step(numbers: Numbers, card: Card) -> float:
+    """Seconds of a step on a card, as predicted."""
+    words, d = len(numbers.scales) + 1, numbers.dimension
+    traffic = words * card.word + 4 * d * REAL / card.bandwidth
+    operations = OPERATIONS.get(numbers.case.fluid.collision.rule, MOST_OPERATIONS)
+    arithmetic = operations * (IN_2D if d == 2 else 1.0) / card.arithmetic
+    launches = 4 if numbers.solids is not None else 2
+    return max(numbers.n * max(traffic, arithmetic), launches * LAUNCH)
+
+
+def rows(case: Case) -> list[Row]:
+    """Memory on a device, and the time of the run on common cards, for `mesokit check`."""
+    numbers = Numbers(case)
+    needed, steps = memory_of(numbers), case.run.warmup + case.run.steps
+    found: list[Row] = [("device memory", size_text(needed), "estimate, without tables of solids")]
+    for card in CARDS:
+        name, step = f"on one {card.name}", seconds_of_step(numbers, card)
+        rate = f"{numbers.n / step:.2g} particle-steps/s"
+        basis = "measured kernels" if card.measured else "bandwidths, not measured"
+        note = f"{rate}, predicted from {basis}; no walls, samples or files"
+        if needed > card.memory:
+            found.append((name, "too large", f"it has {size_text(card.memory)}"))
+        else:
+            found.append((name, duration_text(step * steps), note))
+    return found
