@@ -1,0 +1,96 @@
+"""Kernels for cards of NVIDIA, made without one: text (PTX), then machine code (a cubin).
+
+numba-cuda serves as a compiler alone. Its own launches compile with contraction, which has other
+bits, and would handle dozens of arguments anew each time. This is the only file that uses what is
+private to it; the version is pinned.
+"""
+
+import functools
+import inspect
+import re
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from mesokit.devices.device import BLOCK
+from mesokit.errors import RunError
+
+Chip = tuple[int, int]
+ENTRY = "mesokit_kernel"
+INSTALL = "expected `pip install 'mesokit[cuda13]'`, or [cuda12] for drivers below 580"
+
+
+class Text(NamedTuple):
+    """A kernel as PTX, for one kind of chip."""
+
+    ptx: str
+    chip: Chip
+
+
+@functools.cache
+def _numba_cuda() -> Any:
+    """The compiler of numba-cuda. Raises RunError where it is not installed."""
+    try:
+        from numba.cuda import compiler, dispatcher
+        from numba.cuda.cudadrv import nvvm
+    except ImportError as error:
+        raise RunError(f"device = 'cuda': numba-cuda is missing ({error}); {INSTALL}") from None
+    for module in (compiler, dispatcher):  # asked even where the chip is given
+        module.get_current_device = _AnyDevice
+    return compiler, nvvm
+
+
+class _AnyDevice:
+    """What the compiler asks a device for."""
+
+    compute_capability = (9, 0)
+
+
+def kernel_of(body: Callable) -> Callable:
+    """The function that a thread runs: it finds its number, and does the work if it has any."""
+    from numba import cuda
+
+    names = list(inspect.signature(body).parameters)
+    given = ", ".join(["threads", *names[1:]])
+    space: dict[str, Any] = {"body": body, "grid": cuda.grid, "whole": _int64()}
+    code = f"def kernel({given}):\n    i = whole(grid(1))\n    if i < threads:\n"
+    exec(f"{code}        body({', '.join(['i', *names[1:]])})\n", space)
+    made: Callable = space["kernel"]
+    return made
+
+
+def _int64() -> Any:
+    import numpy as np
+
+    return np.int64
+
+
+def text_of(body: Callable, kinds: tuple[Any, ...], chip: Chip) -> Text:
+    """PTX of a body for arguments of these numba types: products and sums keep their roundings."""
+    from numba import types
+
+    compiler, nvvm = _numba_cuda()
+    made = compiler.compile_cuda(
+        kernel_of(body),
+        types.void,
+        (types.int64, *kinds),
+        nvvm_options={"opt": 3, "fma": 0},
+        cc=chip,
+    )
+    function = made.library.get_function(made.fndesc.llvm_func_name)
+    compiler.kernel_fixup(function, False)
+    nvvm.set_launch_bounds(function, BLOCK)
+    text = "\n".join(made.library.get_asm_strs(cc=chip))
+    return Text(shortened(text), chip)
+
+
+def shortened(text: str) -> str:
+    """PTX with short names: those of numba hold the types of all arguments."""
+    found = re.search(r"\.entry\s+([\w$]+)", text)
+    assert found is not None
+    text = text.replace(found[1], ENTRY)
+    short: dict[str, str] = {}
+
+    def name(found: re.Match) -> str:
+        return short.setdefault(found[0], f"name{len(short)}")
+
+    return re.sub(r"\b(?:_Z|__)\w[\w$]{30,}", name, text)
