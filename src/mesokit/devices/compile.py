@@ -19,11 +19,11 @@ ENTRY = "mesokit_kernel"
 INSTALL = "expected `pip install 'mesokit[cuda13]'`, or [cuda12] for drivers below 580"
 
 
-class Text(NamedTuple):
-    """A kernel as PTX, for one kind of chip."""
+class Machine(NamedTuple):
+    """A kernel as a card loads it, and what the assembler says of it: registers, spills, stack."""
 
-    ptx: str
-    chip: Chip
+    cubin: bytes
+    said: str
 
 
 @functools.cache
@@ -64,7 +64,7 @@ def _int64() -> Any:
     return np.int64
 
 
-def text_of(body: Callable, kinds: tuple[Any, ...], chip: Chip) -> Text:
+def text_of(body: Callable, kinds: tuple[Any, ...], chip: Chip) -> str:
     """PTX of a body for arguments of these numba types: products and sums keep their roundings."""
     from numba import types
 
@@ -79,8 +79,27 @@ def text_of(body: Callable, kinds: tuple[Any, ...], chip: Chip) -> Text:
     function = made.library.get_function(made.fndesc.llvm_func_name)
     compiler.kernel_fixup(function, False)
     nvvm.set_launch_bounds(function, BLOCK)
-    text = "\n".join(made.library.get_asm_strs(cc=chip))
-    return Text(shortened(text), chip)
+    return shortened("\n".join(made.library.get_asm_strs(cc=chip)))
+
+
+def machine_of(ptx: str, chip: Chip) -> Machine:
+    """Machine code of PTX. A driver older than the compiler can load it, but not the PTX."""
+    try:
+        from cuda.bindings import nvjitlink
+    except ImportError as error:
+        raise RunError(f"device = 'cuda': nvJitLink is missing ({error}); {INSTALL}") from None
+    options = [f"-arch=sm_{chip[0]}{chip[1]}", "-Xptxas=-v"]
+    linker, text = nvjitlink.create(len(options), options), ptx.encode() + b"\0"
+    try:
+        nvjitlink.add_data(linker, nvjitlink.InputType.PTX, text, len(text), "kernel.ptx")
+        nvjitlink.complete(linker)
+        cubin = bytearray(nvjitlink.get_linked_cubin_size(linker))
+        nvjitlink.get_linked_cubin(linker, cubin)
+        said = bytearray(nvjitlink.get_info_log_size(linker))
+        nvjitlink.get_info_log(linker, said)
+    finally:
+        nvjitlink.destroy(linker)
+    return Machine(bytes(cubin), said.rstrip(b"\0").decode())
 
 
 def shortened(text: str) -> str:

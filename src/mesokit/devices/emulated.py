@@ -17,7 +17,8 @@ import numpy as np
 from numba import typeof
 from numpy.typing import NDArray
 
-from mesokit.devices.compile import Chip, text_of
+from mesokit.devices.compile import Chip
+from mesokit.devices.cubins import made
 from mesokit.devices.device import BLOCK
 from mesokit.devices.host import BYTES, Host
 from mesokit.devices.translate import PLAIN_MEMORY, Translation
@@ -43,7 +44,7 @@ class Emulated(Host):
         """The machine code of a body, for arguments of these types."""
         kinds = tuple(map(typeof, given))
         if (body, kinds) not in self._kernels:
-            self._kernels[body, kinds] = self._library(text_of(body, kinds, self.chip).ptx)
+            self._kernels[body, kinds] = self._library(made(body, kinds, self.chip).ptx)
         return self._kernels[body, kinds]
 
     def _library(self, ptx: str) -> Any:
