@@ -11,6 +11,8 @@ import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from mesokit.devices.device import BLOCK
 from mesokit.errors import RunError
 
@@ -49,19 +51,12 @@ def kernel_of(body: Callable) -> Callable:
     """The function that a thread runs: it finds its number, and does the work if it has any."""
     from numba import cuda
 
-    names = list(inspect.signature(body).parameters)
-    given = ", ".join(["threads", *names[1:]])
-    space: dict[str, Any] = {"body": body, "grid": cuda.grid, "whole": _int64()}
-    code = f"def kernel({given}):\n    i = whole(grid(1))\n    if i < threads:\n"
-    exec(f"{code}        body({', '.join(['i', *names[1:]])})\n", space)
+    given = ", ".join(f"a{k}" for k in range(1, len(inspect.signature(body).parameters)))
+    space: dict[str, Any] = {"body": body, "grid": cuda.grid, "whole": np.int64}
+    code = f"def kernel(threads, {given}):\n    i = whole(grid(1))\n    if i < threads:\n"
+    exec(f"{code}        body(i, {given})\n", space)
     made: Callable = space["kernel"]
     return made
-
-
-def _int64() -> Any:
-    import numpy as np
-
-    return np.int64
 
 
 def text_of(body: Callable, kinds: tuple[Any, ...], chip: Chip) -> str:

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import mesokit
 from mesokit.devices.compile import Chip, machine_of, text_of
-from mesokit.kernels.made_of import describe_type, place_of
+from mesokit.kernels.made_of import describe_type
 from mesokit.kernels.store import folder
 
 COMPILERS = "numba", "llvmlite", "numba-cuda", "nvidia-nvvm", "nvidia-nvjitlink"
@@ -67,9 +67,13 @@ def _keep(file: Path, new: Made) -> None:
 
 def _key(body: Callable, kinds: tuple[Any, ...], chip: Chip) -> str | None:
     """The name of a kernel on disk; None if no other process could know its sources."""
-    text = repr((place_of(body), [describe_type(kind) for kind in kinds], chip, _versions()))
+    if "<locals>" in body.__qualname__:
+        return None
+    place = body.__module__, body.__qualname__
+    text = repr((place, [describe_type(kind) for kind in kinds], chip, _versions()))
     word = hashlib.sha256(text.encode() + _sources())
-    for name in sorted(set(map(_module_of, _classes(kinds)))):
+    modules = {body.__module__, *(kind.__module__ for kind in _classes(kinds))}
+    for name in sorted(modules):
         if name.split(".")[0] == "mesokit":
             continue
         source = getattr(importlib.import_module(name), "__file__", None)
@@ -106,7 +110,3 @@ def _classes(kinds: tuple[Any, ...]) -> Iterator[type]:
             yield named
         inner = getattr(kind, "types", ())
         yield from _classes(tuple(inner))
-
-
-def _module_of(kind: type) -> str:
-    return kind.__module__

@@ -54,7 +54,8 @@ class CUDA(Running):
         n, zero, lengths = memory.n, memory.physics.zero, memory.lengths
         box, grid = memory.box, memory.grid
         now = self._stages.plan.now._replace(box=box, old=grid, grid=grid)
-        self._launch(wrap, n, memory.physics_there._replace(field=(), solid=()), now, fluid)
+        physics, plain = memory.plain
+        self._launch(wrap, n, physics, now, plain)
         self.device.clear(memory.counts[0], lengths[0] * WHOLE)
         rank, counts = memory.spare_short, memory.counts
         self._launch(order.count_in_cell, n, zero, grid, fluid.r, counts[0], rank)

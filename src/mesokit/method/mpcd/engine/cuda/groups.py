@@ -28,4 +28,6 @@ class Fluid(NamedTuple):
     impulse: int  # momentum and angular momentum that surfaces took, int64
     listed: int  # particles whose flight may meet a surface, int32
     waiting: int  # how many are listed, int32
+    doubtful: int  # cells whose thermostat must draw with care, int32, and how many they are
+    doubts: int
     tensor: tuple  # terms of the stress before and after the collision, int64, where it is measured

@@ -27,11 +27,11 @@ class StepKernel:
         start = len(words_of(0, physics))
         self._now = slice(start, start + plan.now_words)
         self._apart = plan.now_words
-        self._more = slice(self._now.stop, len(self._words))
 
-    def take(self, *more: Any) -> None:
-        """Take other arguments of the same types in the place of `more`."""
-        self._words[self._more] = words_of(0, *more)[1:]
+    def take(self, fluid: Any) -> None:
+        """Take another fluid of the same type, the first of `more`."""
+        words = words_of(0, fluid)[1:]
+        self._words[self._now.stop : self._now.stop + len(words)] = words
 
     def __call__(self, threads: int, row: NDArray[np.uint64]) -> None:
         """Launch so many threads with the words of a step (see `Plan`)."""

@@ -13,10 +13,12 @@ from mesokit.loops.layout import record_length, sums_length
 from mesokit.method.mpcd.engine.cell_gradient import NeighbourSums
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
+from mesokit.method.mpcd.engine.cpu.physics import Physics
 from mesokit.method.mpcd.engine.cuda.groups import Fluid, Kinds
 from mesokit.method.mpcd.engine.cuda.sort import CHUNK
 from mesokit.method.mpcd.engine.cuda.tables import Tables
 from mesokit.method.mpcd.engine.parameters import parameters_of
+from mesokit.method.mpcd.thermostat.protocol import draw
 
 REAL, WHOLE = 8, 4  # bytes of a number
 
@@ -41,6 +43,16 @@ class DeviceMemory:
         self.solutes: Any = ()
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
+
+    @property
+    def plain(self) -> tuple[Physics, Fluid]:
+        """Physics and fluid without what tells kinds of case apart: readings and sorts are compiled
+        once for all of them."""
+        physics = self.physics_there._replace(
+            rule=(), thermostat=(), field=(), solid=(), energy=(), molecule=(), coefficients=(),
+            terms=(), scales=(),
+        )  # fmt: skip
+        return physics, self.fluid._replace(neighbour_sums=(), tensor=())
 
     @property
     def box(self) -> tuple:
@@ -88,8 +100,15 @@ class DeviceMemory:
             impulse=self.room(self.surfaces * self.of_surface * REAL),
             listed=self.room(n * WHOLE if among_solids else 0),
             waiting=self.room(WHOLE),
+            doubtful=self.room(every * WHOLE if self.has_doubts else 0),
+            doubts=self.room(WHOLE),
             tensor=self._tensor(),
         )
+
+    @property
+    def has_doubts(self) -> bool:
+        """Whether the thermostat may have to draw again."""
+        return type(self.physics.thermostat) in draw.implementations
 
     def _tensor(self) -> tuple[int, ...]:
         """A row for each block of threads, as readings of all have."""

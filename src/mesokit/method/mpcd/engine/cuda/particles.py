@@ -92,9 +92,9 @@ def around(solid, r):
 
 
 @scalar
-def bounce_listed(j, physics, now, fluid):
-    """The same flight for the jth of the list, with reflections."""
-    if j < whole(fluid.waiting, 0):
+def bounce_listed(thread, physics, now, fluid, threads):
+    """The same flight with reflections, for every `threads`th particle on the list."""
+    for j in range(thread, whole(fluid.waiting, 0), threads):
         i = whole(fluid.listed, j)
         r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
         number = whole(fluid.ident, i)

@@ -27,9 +27,6 @@ class DeviceReadings(Readings):
 
     def __init__(self, memory: DeviceMemory) -> None:
         super().__init__(memory)
-        self._physics = memory.physics_there._replace(
-            rule=(), thermostat=(), field=(), solid=(), molecule=()
-        )
 
     def _run(self, body: Callable, threads: int, *given: Any) -> None:
         device = self.memory.device
@@ -55,7 +52,8 @@ class DeviceReadings(Readings):
         size = rows * len(scales)
 
         def fill(address: int) -> None:
-            given = self._physics, scales, self.memory.fluid, address, address + WORD * size
+            physics, fluid = self.memory.plain
+            given = physics, scales, fluid, address, address + WORD * size
             self._run(sums.add_motion, self.n, *given)
 
         found = self._summed((rows * (len(scales) + 1),), fill)
@@ -69,7 +67,8 @@ class DeviceReadings(Readings):
         copies = min(max(MANY // size, 1), self._blocks)
 
         def fill(address: int) -> None:
-            where = self._physics, self.memory.box, self.memory.fluid
+            physics, fluid = self.memory.plain
+            where = physics, self.memory.box, fluid
             self._run(sums.add_to_bin, self.n, *where, *two, scales, copies, address)
 
         found = self._summed((copies, size, d + 3, 2), fill).sum(axis=0)
@@ -86,7 +85,8 @@ class DeviceReadings(Readings):
 
         def fill(address: int) -> None:
             waves = there, len(turns), scale, first, last
-            where = self._physics, self.memory.box, self.memory.fluid
+            physics, fluid = self.memory.plain
+            where = physics, self.memory.box, fluid
             self._run(sums.add_to_waves, self.n, *where, waves, copies, address)
 
         try:
@@ -117,7 +117,8 @@ class DeviceReadings(Readings):
         sizes = [chosen.nbytes, *(array.nbytes for array in arrays)]
         rooms = [memory.room(size) for size in sizes]
         memory.device.write(rooms[0], chosen)
-        given = self._physics, memory.box, memory.fluid, int(unwrapped), rooms[0], tuple(rooms[1:])
+        physics, fluid = memory.plain
+        given = physics, memory.box, fluid, int(unwrapped), rooms[0], tuple(rooms[1:])
         if threads:
             self._run(body, threads, *given)
         for room, array in zip(rooms[1:], arrays, strict=True):

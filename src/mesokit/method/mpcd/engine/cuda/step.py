@@ -7,13 +7,18 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import words_of
 from mesokit.method.mpcd.engine.cpu.groups import Course
-from mesokit.method.mpcd.engine.cuda.cells import collide_cell, fill_neighbour_sum
+from mesokit.method.mpcd.engine.cuda.cells import (
+    collide_cell,
+    collide_doubtful,
+    fill_neighbour_sum,
+)
 from mesokit.method.mpcd.engine.cuda.launch import StepKernel
 from mesokit.method.mpcd.engine.cuda.memory import WHOLE, DeviceMemory
 from mesokit.method.mpcd.engine.cuda.particles import bounce_listed, sweep
 from mesokit.method.mpcd.engine.cuda.plan import Plan
 
 Row = NDArray[np.uint64]
+FEW = 2**13  # threads for what few particles or cells need, which they share out
 
 
 class Steps:
@@ -29,7 +34,9 @@ class Steps:
         self._collide = self._of_step(collide_cell, of_cells, memory.fluid)
         self.among_solids = memory.numbers.solids is not None
         if self.among_solids:
-            self._bounce = self._of_step(bounce_listed, physics, memory.fluid)
+            self._bounce = self._of_step(bounce_listed, physics, memory.fluid, FEW)
+        if memory.has_doubts:
+            self._doubt = self._of_step(collide_doubtful, of_cells, memory.fluid, FEW)
         if memory.fluid.neighbour_sums:
             self._sums = words_of(memory.number_of_cells, of_cells, memory.fluid)
             self._fill = self.device.kernel(fill_neighbour_sum, (of_cells, memory.fluid))
@@ -60,7 +67,11 @@ class Steps:
             self.device.clear(memory.fluid.waiting, WHOLE)
         self._sweep(memory.n, row)  # v: the collision at t; r, v: t -> t + dt; sums
         if self.among_solids:
-            self._bounce(memory.n, row)  # the same for those that may meet a surface
+            self._bounce(FEW, row)  # the same for those that may meet a surface
         if memory.fluid.neighbour_sums:
             self.device.launch(self._fill, self._sums)  # sums for gradients over neighbours
+        if memory.has_doubts:
+            self.device.clear(memory.fluid.doubts, WHOLE)
         self._collide(memory.number_of_cells, row)  # thermostat, rule at t + dt: coefficients
+        if memory.has_doubts:
+            self._doubt(FEW, row)  # the same where the thermostat must draw with care

@@ -1,0 +1,57 @@
+"""The same fluid on a device: the bits of the processor's engine, without a card.
+
+Checked devices run what NVIDIA's compiler made of a kernel on the processor, and look at every
+access to memory. Emulated ones do not look, for several kinds of chip; the host runs the kernels'
+sources.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from mesokit.devices.checked import Checked
+from mesokit.devices.emulated import Emulated
+from mesokit.devices.host import Host
+from tests.helpers.on_devices import STEPS, kinds_of_bulk, pair
+
+CHIPS = ((8, 0), (9, 0), (12, 0))
+DEVICES = {
+    "host in order": Host,
+    "host shuffled": lambda: Host(7),
+    **{f"chip {chip}": lambda chip=chip: Emulated(chip) for chip in CHIPS},
+    "checked": Checked,
+}
+MEASURED = ("stress",)
+QUICK = (
+    "rule AT", "rule SRD", "rule SRDPlusA", "rule ATPlusA", "thermostat MaxwellBoltzmann",
+    "force SampledForce", "force ScheduledForce", "shear OscillatingShear", "mixture",
+    "mixture that demixes",
+)  # fmt: skip
+KINDS = {d: kinds_of_bulk(d) for d in (2, 3)}
+
+
+@pytest.fixture(scope="module")
+def devices():
+    """Each device once: kernels are made for the first fluid that needs them."""
+    made = {}
+    return lambda name: made.setdefault(name, DEVICES[name]())
+
+
+def rows():
+    """Every kind on every device; few of them are quick, in two dimensions on one device."""
+    for d, kinds in KINDS.items():
+        for kind in kinds:
+            for device in DEVICES:
+                quick = kind in QUICK and d == 2 and device == "checked"
+                marks = [] if quick else [pytest.mark.long]
+                yield pytest.param(device, d, kind, marks=marks, id=f"{d}D {kind}, {device}")
+
+
+@pytest.mark.parametrize(("device", "dimension", "kind"), list(rows()))
+def test_bulk_fluids_have_the_same_bits(devices, device, dimension, kind) -> None:
+    both = pair(devices(device), MEASURED, **KINDS[dimension][kind])
+    both.advance(STEPS, MEASURED)
+    both.require_same()
+    both.advance(STEPS, MEASURED)
+    both.require_same()
+    assert getattr(devices(device), "faults", {}) == {}

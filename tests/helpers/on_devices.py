@@ -1,0 +1,99 @@
+"""The same fluid on the threads of a processor and on a device, which must have the same bits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit import SRD, Demix, MaxwellBoltzmann, Rescale, Species, SteadyShear, Uniform
+from mesokit.case.shear import HISTORIES
+from mesokit.method.mpcd.collision import RULES
+from mesokit.method.mpcd.engine.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cuda.engine import CUDA
+from mesokit.method.mpcd.field import RULES as FORCES
+from mesokit.method.mpcd.start.fluid import start
+from mesokit.method.mpcd.thermostat import RULES as THERMOSTATS
+from tests.helpers.small_fluids import assert_same, example, make_case
+
+STEPS = 12  # one more sort than that at the start, at this timestep
+TIMESTEP = 0.5
+
+
+class Pair(NamedTuple):
+    """Two engines of one case, at their start."""
+
+    cpu: CPU
+    on_device: CUDA
+
+    def advance(self, steps: int, measure: Sequence[str] = ()) -> None:
+        """Run some steps on both."""
+        self.cpu.advance(steps, measure)
+        self.on_device.advance(steps, measure)
+
+    def require_same(self) -> None:
+        """Raise AssertionError unless both have the same bits and the same readings."""
+        one, other = self.cpu.state(), self.on_device.state()
+        assert one.keys() == other.keys()
+        assert_same(one.values(), other.values())
+        assert_same(readings(self.cpu), readings(self.on_device))
+
+
+def pair(device: Any, measures: Sequence[str] = (), **parts: Any) -> Pair:
+    """The engines of a small fluid."""
+    case = make_case(**parts)
+    made = Pair(CPU(case, 1, measures), CUDA(case, device, measures))
+    for engine in made:
+        start(engine)
+    return made
+
+
+def readings(fluid: Any) -> list[Any]:
+    """All that an observable may read."""
+    d = fluid.dimension
+    waves = np.array([np.full(d, 0.3), np.eye(d)[0]])
+    some = np.array([5, 3, 100])
+    number, momentum, energy = fluid.totals()
+    sums = fluid.sums_of_particles(
+        lambda part: (part.ids % 3, [part.positions[:, 0], part.velocities[:, 1]]), 3, [1.0, 1.0]
+    )
+    particles = fluid.positions(), fluid.velocities(), fluid.images()
+    of_some = fluid.positions(some), fluid.velocities(some), fluid.positions(some, unwrapped=True)
+    bins = *fluid.moments((0,), (7,)), *fluid.moments((1, 0), (3, 5))
+    modes = *fluid.modes(waves), *fluid.modes(waves, 10, 100)
+    taken = fluid.wall_impulse, *fluid.stress.values()
+    return [*particles, *of_some, number, momentum, energy, sums, *bins, *modes, *taken]
+
+
+def bulk(dimension: int, **parts: Any) -> dict[str, Any]:
+    """A fluid without walls, small but larger than a block of threads."""
+    size = {2: (8, 8), 3: (4, 5, 6)}[dimension]
+    return {"size": size, "density": 8, "timestep": TIMESTEP} | parts
+
+
+def kinds_of_bulk(dimension: int) -> dict[str, dict[str, Any]]:
+    """Every rule, thermostat, force and history of the shear, and mixtures."""
+    held = {"collision": SRD(angle=130.0), "thermostat": MaxwellBoltzmann()}
+    force = Uniform((0.01,) + (0.0,) * (dimension - 1))
+    kinds = {f"rule {rule.__name__}": {"collision": example(rule, dimension)} for rule in RULES}
+    kinds |= {
+        f"thermostat {one.__name__}": held | {"thermostat": example(one, dimension)}
+        for one in THERMOSTATS
+    }
+    kinds |= {f"force {one.__name__}": held | {"force": example(one, dimension)} for one in FORCES}
+    kinds |= {
+        f"shear {one.__name__}": held | {"shear": example(one, dimension)} for one in HISTORIES
+    }
+    kinds["mixture"] = held | {
+        "species": (Species(mass=1, density=3), Species(mass=2.5, density=5)),
+        "force": force,
+    }
+    kinds["mixture that demixes"] = {
+        "collision": Demix(coupling=0.5),
+        "thermostat": Rescale(),
+        "species": (Species(mass=1, density=4), Species(mass=1, density=4)),
+    }
+    kinds["sheared mixture"] = kinds["mixture"] | {"shear": SteadyShear(0.1)}
+    kinds["sheared mixture"].pop("force")
+    return {name: bulk(dimension, **parts) for name, parts in kinds.items()}
