@@ -15,7 +15,7 @@ from mesokit.case.shear.protocol import slid, speed
 from mesokit.case.shear.steady import SteadyShear
 from mesokit.errors import CaseError
 from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import generic, scalar
+from mesokit.scalar.jit import elementwise, generic
 
 Axis = Literal["x", "y", "z"]
 AXES: tuple[Axis, ...] = ("x", "y", "z")
@@ -217,12 +217,22 @@ def _(box, time):
     return Sheared(box.size, box.inverse, fast, offset, box.lag, box.history)
 
 
-@scalar
+@elementwise
 def images(box, r, shift):
     """How many boxes r + shift is away from the primary one, along each axis, as floats."""
-    for k in range(len(r)):
-        r = with_item(r, k, floor((r[k] + shift[k]) * box.inverse[k]))
-    return r
+    return "floor((r[{k}] + shift[{k}]) * box.inverse[{k}])"
+
+
+@elementwise
+def _boxes_back(box, r, n):
+    """The place so many boxes back along each axis."""
+    return "r[{k}] - n[{k}] * box.size[{k}]"
+
+
+@elementwise
+def _boxes_on(box, r, n):
+    """The place so many boxes on along each axis."""
+    return "r[{k}] + n[{k}] * box.size[{k}]"
 
 
 @generic
@@ -250,9 +260,7 @@ def slide(box, r, v, shift):
 @fold.register(Periodic)
 def _(box, r, v, shift):
     n = images(box, r, shift)
-    for k in range(len(r)):
-        r = with_item(r, k, r[k] - n[k] * box.size[k])
-    return r, v, n
+    return _boxes_back(box, r, n), v, n
 
 
 @fold.register(*SLIDING)
@@ -261,22 +269,17 @@ def _(box, r, v, shift):
     r = with_item(r, 0, r[0] - up * box.offset)
     v = with_item(v, 0, v[0] - up * box.speed)
     n = images(box, r, shift)
-    for k in range(len(r)):
-        r = with_item(r, k, r[k] - n[k] * box.size[k])
-    return r, v, n
+    return _boxes_back(box, r, n), v, n
 
 
 @unfold.register(Periodic)
 def _(box, r, v, crossed):
-    for k in range(len(r)):
-        r = with_item(r, k, r[k] + crossed[k] * box.size[k])
-    return r, v
+    return _boxes_on(box, r, crossed), v
 
 
 @unfold.register(*SLIDING)
 def _(box, r, v, crossed):
-    for k in range(len(r)):
-        r = with_item(r, k, r[k] + crossed[k] * box.size[k])
+    r = _boxes_on(box, r, crossed)
     r = with_item(r, 0, r[0] + crossed[1] * box.offset)
     return r, with_item(v, 0, v[0] + crossed[1] * box.speed)
 

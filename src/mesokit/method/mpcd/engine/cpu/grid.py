@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mesokit.scalar.intrinsics import floor, mul_add, with_item
-from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.jit import by_type, elementwise, scalar
 
 
 class Grid(NamedTuple):
@@ -52,10 +52,12 @@ def placed(grid, shift, origin):
 @scalar
 def in_cell(r, grid):
     """Position relative to the centre of its cell."""
-    for k in range(len(r)):
-        x = r[k] + grid.origin[k]
-        r = with_item(r, k, x - floor(x) - 0.5)
-    return r
+    return _from_middle(grid.origin, r)
+
+
+@elementwise
+def _from_middle(origin, r):
+    return "r[{k}] + origin[{k}] - floor(r[{k}] + origin[{k}]) - 0.5"
 
 
 @scalar
@@ -85,15 +87,36 @@ def cell_index(r, grid):
 
 
 def _in_box(r, grid):
-    index, cells = 0.0, 1.0
-    for j in range(len(r)):
-        k = len(r) - 1 - j
-        i = floor(r[k] + grid.origin[k])
-        # half a cell keeps the quotient away from whole numbers, where it might round either way
-        images = floor(mul_add(i, grid.inverse[k], 0.5 * grid.inverse[k]))
-        index = mul_add(index, grid.cells[k], mul_add(-grid.cells[k], images, i))
-        cells *= grid.cells[k]
+    index, cells = _joined_index(grid.cells, _cell_along(grid, r))
     return np.int32(index if (index >= 0.0) & (index < cells) else cells)
+
+
+@elementwise
+def _cell_along(grid, r):
+    return "_cell_on_axis(r[{k}] + grid.origin[{k}], grid.cells[{k}], grid.inverse[{k}])"
+
+
+@scalar
+def _cell_on_axis(x, cells, inverse):
+    """The cell of a coordinate in cells, in the primary box."""
+    i = floor(x)
+    # half a cell keeps the quotient away from whole numbers, where it might round either way
+    return mul_add(-cells, floor(mul_add(i, inverse, 0.5 * inverse)), i)
+
+
+@by_type
+def _joined_index(cells, place):
+    """The number of a cell from its place along each axis, and the number of all; axes are written
+    out, for compilers of cards keep loops over them."""
+    if len(place) == 2:
+        return lambda cells, place: (
+            mul_add(place[1], cells[0], place[0]),
+            cells[0] * cells[1],
+        )
+    return lambda cells, place: (
+        mul_add(mul_add(place[2], cells[1], place[1]), cells[0], place[0]),
+        cells[2] * cells[1] * cells[0],
+    )
 
 
 def _in_part(r, grid):
