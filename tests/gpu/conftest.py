@@ -2,4 +2,5 @@
 
 from importlib.util import find_spec
 
-collect_ignore = [] if find_spec("numba_cuda") else ["test_gpu.py"]
+NEEDS_IT = ["test_gpu.py", "test_devices.py", "test_same_bits_on_devices.py"]
+collect_ignore = [] if find_spec("numba_cuda") else NEEDS_IT

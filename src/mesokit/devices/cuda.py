@@ -117,11 +117,11 @@ class Cuda:
         """The kernel of a body, for arguments of these types; loaded as machine code."""
         kinds = tuple(map(typeof, given))
         if (body, kinds) not in self._kernels:
-            self._kernels[body, kinds] = self.loaded(made(body, kinds, self.chip).cubin)
+            self._kernels[body, kinds] = self.loaded(*made(body, kinds, self.chip)[:2])
         return self._kernels[body, kinds]
 
-    def loaded(self, cubin: bytes) -> Any:
-        """The kernel in machine code."""
+    def loaded(self, ptx: str, cubin: bytes) -> Any:
+        """A kernel, by its machine code: a driver may be too old for the PTX."""
         from mesokit.devices.compile import ENTRY
 
         module = self._ask(self._driver.cuModuleLoadData(cubin))

@@ -44,10 +44,11 @@ class Emulated(Host):
         """The machine code of a body, for arguments of these types."""
         kinds = tuple(map(typeof, given))
         if (body, kinds) not in self._kernels:
-            self._kernels[body, kinds] = self._library(made(body, kinds, self.chip).ptx)
+            self._kernels[body, kinds] = self.loaded(*made(body, kinds, self.chip)[:2])
         return self._kernels[body, kinds]
 
-    def _library(self, ptx: str) -> Any:
+    def loaded(self, ptx: str, cubin: bytes) -> Any:
+        """A kernel, by its PTX: the machine code of a card is of no use here."""
         source = Translation(ptx, self.memory_code, self.before_thread).source
         return ctypes.CDLL(str(machine_code_of(source)))
 
