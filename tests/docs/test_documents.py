@@ -73,7 +73,9 @@ def test_commands_and_scripts_run_in_order(
     page: str, workplace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # tests/study has studies in processes of their own, whose start is most of their time here
-    monkeypatch.setattr("mesokit.study.study.Processes", lambda jobs, threads, parts: Here(threads))
+    monkeypatch.setattr(
+        "mesokit.study.study.Processes", lambda jobs, threads, parts, device: Here(threads, device)
+    )
     if page == "docs/studies.md":  # other pages have the figures of a run
         monkeypatch.setattr("mesokit.report.save_all", lambda *given, **more: [])
     if not (workplace / "poiseuille.toml").exists():

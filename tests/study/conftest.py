@@ -40,7 +40,7 @@ every = 10
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs of studies go on in this process: the start of others is most of their time."""
     made = "mesokit.study.study.Processes"
-    monkeypatch.setattr(made, lambda jobs, threads, parts: Here(threads))
+    monkeypatch.setattr(made, lambda jobs, threads, parts, device: Here(threads, device))
 
 
 @pytest.fixture(scope="session")

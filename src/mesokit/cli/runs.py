@@ -25,7 +25,6 @@ from mesokit.cli.commands import (
 from mesokit.cli.end import show_results, stopping
 from mesokit.cli.together import on_ranks
 from mesokit.cli.words import READING, in_json, patience, say
-from mesokit.devices.named import CPU
 from mesokit.errors import CaseError
 from mesokit.processes.world import world
 
@@ -77,11 +76,7 @@ def run(
             )
         if here.size > 1:
             raise CaseError(f"--seeds: not on {here.size} ranks; expected one process")
-        if device != CPU:
-            raise CaseError(
-                f"--device {device}: not with --seeds; expected run.replicas in the case"
-            )
-        given = {"settings": settings, "threads": threads, "quiet": quiet}
+        given = {"settings": settings, "threads": threads, "device": device, "quiet": quiet}
         return run_seeds(case, seeds, output, given)
     with patience(READING, quiet):
         full = read(case, settings)

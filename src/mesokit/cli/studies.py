@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from mesokit.cli.commands import RUN, SET, cli, dependence, pairs, require_run
+from mesokit.cli.commands import DEVICE, RUN, SET, cli, dependence, pairs, require_run
 from mesokit.cli.end import show_results, stopping
 from mesokit.cli.words import patience, say, show_table
 from mesokit.errors import CaseError, RunError
@@ -38,6 +38,7 @@ def _axes(context: click.Context, option: click.Parameter, values: Sequence[str]
 )
 @click.option("--jobs", type=click.IntRange(1), help="Runs at once (one a core unless said).")
 @click.option("--threads", type=click.IntRange(1), default=1, help="Threads of each run.  [1]")
+@DEVICE
 @click.option(
     "--cluster",
     metavar="KIND",
@@ -73,10 +74,10 @@ def study(what: Path, **given: Any) -> None:
         rows = enumerate(made.runs, start=1)
         return show_table([(str(number), run.state, str(run.path)) for number, run in rows])
     if given["job_array"]:
-        script = write_job_array(made.path, len(made.runs), given["threads"])
+        script = write_job_array(made.path, len(made.runs), given["threads"], given["device"])
         return click.echo(f"wrote {script}; next: sbatch {shlex.quote(str(script))}")
     if given["only"] is not None:
-        return _only(made, given["only"], given["threads"])
+        return _only(made, given["only"], given["threads"], given["device"])
     if not given["quiet"] and not made.ended:
         for warning in made.warnings():
             say(f"warning: {warning}")
@@ -87,7 +88,7 @@ def study(what: Path, **given: Any) -> None:
         try:
             if given["options"] and not given["cluster"]:
                 raise CaseError("--cluster-option: only with --cluster")
-            own = {name: given[name] for name in ("threads", "cluster", "options")}
+            own = {name: given[name] for name in ("threads", "device", "cluster", "options")}
             made.run(given["jobs"], progress=StudyReporter(given["quiet"]), **own)
         except RunError as error:
             if not any(run.ended for run in made.runs):
@@ -122,14 +123,14 @@ def _made(Study: Any, what: Path, given: dict[str, Any]) -> Any:
     )
 
 
-def _only(made: Any, number: int, threads: int) -> None:
+def _only(made: Any, number: int, threads: int, device: str) -> None:
     """Carry one run, as a job of an array does."""
     from mesokit.study.work import carry
 
     if number > len(made.runs):
         raise CaseError(f"--only {number}: the study has {len(made.runs)} runs")
     run = made.runs[number - 1]
-    if not run.ended and (why := carry(str(run.path), threads)):
+    if not run.ended and (why := carry(str(run.path), threads, device=device)):
         raise RunError(f"{run.path}: {why}")
 
 
@@ -195,7 +196,11 @@ def run_seeds(case: Path, seeds: int, output: Path, given: dict[str, Any]) -> No
         for warning in made.warnings():
             say(f"warning: {warning}")
     with stopping(f"mesokit study {output}"):
-        made.run(threads=given["threads"] or 1, progress=StudyReporter(given["quiet"]))
+        made.run(
+            threads=given["threads"] or 1,
+            device=given["device"],
+            progress=StudyReporter(given["quiet"]),
+        )
     if len(made.runs) > 1:
         files = made.merged()
         if not given["quiet"]:

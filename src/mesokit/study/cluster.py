@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from mesokit.case.component import nearest, one_of, show
+from mesokit.devices.named import CPU
 from mesokit.errors import CaseError
 from mesokit.io.atomic import write_text
 from mesokit.io.optional import package
@@ -31,11 +32,11 @@ SCRIPT = """\
 #SBATCH --job-name={job}
 #SBATCH --array=1-{runs}
 #SBATCH --cpus-per-task={threads}
-#SBATCH --time=24:00:00
+{card}#SBATCH --time=24:00:00
 #SBATCH --signal=B:USR1@120
 #SBATCH --output={folder}/job-%A_%a.txt
 cd {here}
-exec {python} -m mesokit study {folder} --only "$SLURM_ARRAY_TASK_ID" --threads {threads}
+exec {python} -m mesokit study {folder} --only "$SLURM_ARRAY_TASK_ID" --threads {threads}{more}
 """
 
 
@@ -60,9 +61,11 @@ class Cluster:
         threads: int = 1,
         modules: Sequence[str] = (),
         options: Mapping[str, Any] | None = None,
+        device: str = CPU,
     ) -> None:
         distributed = package("distributed", "studies on a cluster", "cluster")
         self.threads, self.modules, self.own = threads, tuple(modules), None
+        self.device = device
         if "://" in kind:
             self.client = distributed.Client(kind)
             return
@@ -103,7 +106,8 @@ class Cluster:
 
     def submit(self, path: Path) -> Any:
         run = str(path.resolve())
-        return self.client.submit(carry, run, self.threads, self.modules, pure=False)
+        given = run, self.threads, self.modules, self.device
+        return self.client.submit(carry, *given, pure=False)
 
     def stop(self) -> None:
         """Runs that are on other machines end with their workers, at their last checkpoints."""
@@ -114,8 +118,10 @@ class Cluster:
             self.own.close()
 
 
-def write_job_array(folder: Path, runs: int, threads: int = 1) -> Path:
+def write_job_array(folder: Path, runs: int, threads: int = 1, device: str = CPU) -> Path:
     """Write the script `job-array.sh` into the folder of a study. Raises RunError.
+
+    On a device each job asks for a card.
 
     Slurm sends SIGUSR1 two minutes before the end, upon which a run writes a checkpoint.
     """
@@ -126,6 +132,8 @@ def write_job_array(folder: Path, runs: int, threads: int = 1) -> Path:
         job=shlex.quote(folder.name),
         runs=runs,
         threads=threads,
+        card="" if device == CPU else "#SBATCH --gres=gpu:1\n",
+        more="" if device == CPU else f" --device {shlex.quote(device)}",
         here=shlex.quote(str(Path.cwd())),
         python=shlex.quote(sys.executable),
     )

@@ -10,6 +10,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from mesokit.devices.named import CPU
 from mesokit.io.run_directory import RunDirectory
 from mesokit.run.folder import note_failed
 from mesokit.study.work import carry
@@ -24,8 +25,10 @@ class Processes:
     Ctrl-C goes to the study alone; `stop` sends signals to its workers.
     """
 
-    def __init__(self, jobs: int, threads: int = 1, modules: Sequence[str] = ()) -> None:
-        self.jobs, self.arguments = jobs, [str(threads), *modules]
+    def __init__(
+        self, jobs: int, threads: int = 1, modules: Sequence[str] = (), device: str = CPU
+    ) -> None:
+        self.jobs, self.arguments = jobs, [str(threads), device, *modules]
         self.pool = ThreadPoolExecutor(jobs)
         self.idle: queue.SimpleQueue[subprocess.Popen[str]] = queue.SimpleQueue()
         self.busy: set[subprocess.Popen[str]] = set()
@@ -109,12 +112,12 @@ class Here:
 
     places = 1
 
-    def __init__(self, threads: int = 1) -> None:
-        self.threads = threads
+    def __init__(self, threads: int = 1, device: str = CPU) -> None:
+        self.threads, self.device = threads, device
 
     def submit(self, path: Path) -> Future[str]:
         done: Future[str] = Future()
-        done.set_result(carry(str(path), self.threads))
+        done.set_result(carry(str(path), self.threads, device=self.device))
         return done
 
     def stop(self) -> None:

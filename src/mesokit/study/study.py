@@ -11,11 +11,12 @@ from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import outside_parts
+from mesokit.devices.named import CPU, require_name
 from mesokit.errors import CaseError, RunError
 from mesokit.processes.cores import usable_cores
 from mesokit.processes.world import world
 from mesokit.run.opened import RunFiles
-from mesokit.seam.method import summary_of
+from mesokit.seam.method import on_devices, summary_of
 from mesokit.study import definition
 from mesokit.study import table as tables
 from mesokit.study.axes import Axis
@@ -185,6 +186,7 @@ class Study(Shown):
         jobs: int | None = None,
         *,
         threads: int = 1,
+        device: str = CPU,
         cluster: str | None = None,
         options: Mapping[str, Any] | None = None,
         progress: StudyReporter | bool | None = None,
@@ -197,6 +199,8 @@ class Study(Shown):
             Runs at once: one for each core and its `threads` unless said; on a cluster, workers.
         threads : int, optional
             Threads of each run. Results do not depend on it.
+        device : str, optional
+            "cpu", or "cuda" for a card, on which one run at a time goes unless `jobs` are given.
         cluster : str, optional
             "slurm", "pbs", "sge", "lsf", "htcondor", "local" or the address of a Dask scheduler.
         options : mapping, optional
@@ -213,27 +217,29 @@ class Study(Shown):
         made = [self.path / FILE, *(run.path / CASE for run in self.runs)]
         if not all(file.exists() for file in made):  # not written yet, or removed
             self._make()
-        workers = self._workers(jobs, threads, cluster, options)
+        if require_name(device) != CPU:
+            on_devices(self._case, device, 1)
+        workers = self._workers(jobs, threads, device, cluster, options)
         if failed := drive(self.runs, workers, reporter):
             run, why = failed[0]
             more = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""
             raise RunError(f"{run.path}: {why}{more}")
 
     def _workers(
-        self, jobs: int | None, threads: int, cluster: str | None, options: Any
+        self, jobs: int | None, threads: int, device: str, cluster: str | None, options: Any
     ) -> Workers:
         modules = sorted({part["class"].partition(":")[0] for part in outside_parts(self._case)})
-        places = jobs or max(1, usable_cores() // threads)
+        places = jobs or (max(1, usable_cores() // threads) if device == CPU else 1)
         if "__main__" in modules:
             if cluster or jobs not in (None, 1):
                 raise CaseError(
                     "parts of the case are defined in this script: put them into a module of their "
                     "own, so that other processes can import it, or let jobs be 1"
                 )
-            return Here(threads)
+            return Here(threads, device)
         if cluster:
-            return Cluster(cluster, places, threads, modules, options)
-        return Processes(min(places, len(self.runs)), threads, modules)
+            return Cluster(cluster, places, threads, modules, options, device)
+        return Processes(min(places, len(self.runs)), threads, modules, device)
 
     def table(self) -> list[Pooled]:
         """Every compared number at every point, pooled over the seeds that have ended."""

@@ -11,6 +11,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from mesokit.devices.named import CPU
 from mesokit.errors import MesokitError, RunError
 from mesokit.io.atomic import write_text
 from mesokit.io.run_directory import RunDirectory
@@ -39,7 +40,7 @@ class Note(Reporter):
         self.file.unlink(missing_ok=True)
 
 
-def carry(path: str, threads: int = 1, modules: Sequence[str] = ()) -> str:
+def carry(path: str, threads: int = 1, modules: Sequence[str] = (), device: str = CPU) -> str:
     """Carry the run in a folder to its end, from its last checkpoint.
 
     `modules` define parts of its case. Returns "", or why it did not end.
@@ -48,7 +49,7 @@ def carry(path: str, threads: int = 1, modules: Sequence[str] = ()) -> str:
         with catching(_stop):
             for module in modules:
                 importlib.import_module(module)
-            simulation = Simulation.resume(path, threads=threads)
+            simulation = Simulation.resume(path, threads=threads, device=device)
             simulation.run(progress=Note(RunDirectory(Path(path)).progress_file))
     except Stopped as stop:
         return str(stop) or "stopped"
@@ -64,7 +65,7 @@ def _stop(by: signal.Signals) -> None:
     raise Stopped(by, f"stopped before the start by {by.name}")
 
 
-def serve(threads: int, modules: Sequence[str]) -> None:
+def serve(threads: int, device: str, modules: Sequence[str]) -> None:
     """Carry out runs from standard input, a folder in each line, and answer each with a line.
 
     If the study has ended, the present run ends at a checkpoint.
@@ -76,7 +77,7 @@ def serve(threads: int, modules: Sequence[str]) -> None:
     threading.Thread(target=_listen, args=(lines, busy), daemon=True).start()
     while path := lines.get():
         busy.set()
-        said = carry(path, threads, modules)
+        said = carry(path, threads, modules, device)
         busy.clear()
         with contextlib.suppress(OSError):
             print(" ".join(said.split()), file=answers, flush=True)
@@ -91,4 +92,4 @@ def _listen(lines: queue.SimpleQueue[str], busy: threading.Event) -> None:
 
 
 if __name__ == "__main__":
-    serve(int(sys.argv[1]), sys.argv[2:])
+    serve(int(sys.argv[1]), sys.argv[2], sys.argv[3:])
