@@ -1,0 +1,108 @@
+"""Runs on devices, from the case file: files, records, resumes on other devices, and refusals."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+
+import pytest
+
+from mesokit import Simulation
+from mesokit.errors import CaseError
+from tests.helpers.rank_runs import MESOKIT, MPIEXEC, Ranks, same_files
+
+STEPS = 40
+CASE = """
+[run]
+steps = {steps}
+[box]
+size = [8, 6, 5]
+[fluid]
+density = 5
+timestep = 0.4
+thermostat = {{ rule = "maxwell-boltzmann" }}
+force = {{ rule = "uniform", acceleration = [0.05, 0, 0] }}
+[[wall]]
+shape = "plates"
+axis = "y"
+virtual = "none"
+[[observe]]
+quantity = "velocity-profile"
+axis = "y"
+every = 3
+[[observe]]
+quantity = "wall-stress"
+[trajectory]
+every = 10
+[log]
+every = 10
+"""
+
+
+@pytest.fixture
+def case(tmp_path):
+    file = tmp_path / "case.toml"
+    file.write_text(CASE.format(steps=STEPS))
+    return file
+
+
+@pytest.mark.long  # kernels of ranks
+def test_a_run_goes_from_processor_to_device_and_back_to_ranks(case, tmp_path) -> None:
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    Simulation(case, output=whole, threads=1).run()
+    first = Simulation(case, output=parts, threads=1)
+    first.run(7)
+    first.checkpoint()
+    second = Simulation.resume(parts, device="emulated")
+    second.run(12)
+    second.checkpoint()
+    third = Simulation.resume(parts, threads=2)
+    third.run(11)
+    third.checkpoint()
+    del first, second, third
+    if MPIEXEC is None:
+        Simulation.resume(parts, device="host").run()
+    else:
+        ranks = Ranks([MPIEXEC, "-n", 2, *MESOKIT, "resume", parts, "--quiet"], tmp_path)
+        assert ranks.end() == 0, ranks.err
+    same_files(whole, parts)
+
+
+def test_the_record_names_the_device(case, tmp_path) -> None:
+    Simulation(case, output=tmp_path / "run", device="host").run(2)
+    record = json.loads((tmp_path / "run" / "provenance.json").read_text())
+    assert record["device"] == "host"
+
+
+def mesokit(folder, *words):
+    done = subprocess.run([*MESOKIT, *words], cwd=folder, capture_output=True, text=True)
+    return done.returncode, done.stdout, done.stderr.strip()
+
+
+def test_a_device_that_is_not_there_is_an_error_before_the_run(case, tmp_path) -> None:
+    status, _, said = mesokit(tmp_path, "run", case.name, "--device", "cud", "--quiet")
+    expected = "'cpu', 'cuda', 'emulated' or 'host'; did you mean 'cuda'?"
+    assert (status, said) == (2, f"mesokit: error: case.toml: device = 'cud': expected {expected}")
+    assert not (tmp_path / "case").exists()
+
+
+def test_what_a_device_takes_is_known_without_a_card(case, tmp_path) -> None:
+    status, out, said = mesokit(tmp_path, "check", case.name, "--device", "cuda")
+    assert (status, said) == (0, "")
+    assert "device memory" in out
+    assert "on one H200" in out
+    assert "not measured" in out
+
+
+def test_methods_without_kernels_are_refused(tmp_path) -> None:
+    file = tmp_path / "birds.toml"
+    file.write_text('[run]\nmethod = "flock"\nsteps = 1\n[box]\nsize = [8, 8]\n')
+    with pytest.raises(CaseError, match=r"device = 'host': not for run\.method = 'flock'"):
+        Simulation(file, device="host")
+
+
+def test_replicas_on_a_device_are_those_of_the_processor(case, tmp_path) -> None:
+    case.write_text(CASE.format(steps="9\nreplicas = 2"))
+    for device in ("cpu", "host"):
+        Simulation(case, output=tmp_path / device, device=device, threads=1).run()
+    same_files(tmp_path / "cpu", tmp_path / "host")
