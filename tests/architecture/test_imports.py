@@ -23,13 +23,13 @@ MODULES = {
 # Files or folders, the longest name that fits decides: which modules of mesokit they may import, at
 # run time, inside functions or for type hints. "=" before a name: that module, not what is in it.
 MPCD = (
-    "case", "errors", "geometry", "kernels", "method.mpcd", "potential", "processes.cores",
-    "scalar", "seam", "statistics", "theory",
+    "case", "devices", "errors", "geometry", "kernels", "method.mpcd", "potential",
+    "processes.cores", "scalar", "seam", "statistics", "theory",
 )  # fmt: skip
 # type hints only, as the test of what is loaded shows
 START = (*MPCD, "processes.world")
 ENGINE = (
-    "case", "errors", "geometry", "loops", "method.mpcd", "potential", "scalar", "seam",
+    "case", "devices", "errors", "geometry", "loops", "method.mpcd", "potential", "scalar", "seam",
     "statistics",
 )  # fmt: skip
 SPHERES = (
@@ -50,8 +50,13 @@ ROWS = {
     "case/": ("case", "errors", "scalar", "theory"),
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
-    "seam/": ("case", "errors", "geometry.solids", "processes.cores", "seam", "statistics"),
+    "seam/": (
+        "case", "devices.device", "errors", "geometry.solids", "processes.cores", "seam",
+        "statistics",
+    ),
     "loops/": ("loops", "scalar"),
+    "devices/": ("case.amounts", "case.component", "devices", "errors", "kernels", "stub"),
+    "devices/names.py": (),
     "processes/": ("errors", "processes"),
     "processes/cores.py": (),
     "processes/signals.py": (),
@@ -86,14 +91,19 @@ ROWS = {
     "report/": ("case", "errors", "geometry", "io", "observe", "report", "seam"),
     "report/flow/state.py": ("case", "io.contact_records", "seam"),
     "report/flow/shaded.py": ("report", "kernels.kernel"),
-    "run/": ("case", "errors", "io", "observe.shared", "processes", "report", "run", "seam"),
+    "run/": (
+        "case", "devices", "errors", "io", "observe.shared", "processes", "report", "run", "seam",
+    ),
     "run/loop.py": ("case", "kernels.kept", "processes", "report", "run", "seam"),
     "run/warm.py": ("case", "kernels", "run"),
     "study/": (
-        "case", "errors", "io", "observe.shared", "processes", "report", "run", "seam",
-        "statistics", "study",
+        "case", "devices.named", "devices.names", "errors", "io", "observe.shared", "processes",
+        "report", "run", "seam", "statistics", "study",
     ),
-    "cli/": ("case", "cli", "errors", "io", "processes", "report", "run", "seam", "study"),
+    "cli/": (
+        "case", "cli", "devices.named", "devices.names", "errors", "io", "processes", "report",
+        "run", "seam", "study",
+    ),
     "cli/compiled.py": ("case", "cli", "errors", "kernels", "processes", "run.warm"),
     "cli/theory.py": ("case", "cli", "errors", "method.mpcd", "theory"),
 }  # fmt: skip
@@ -116,7 +126,8 @@ HOMES = {
     "gsd": ("io/",),
     "MDAnalysis": ("io/",),
     "mpi4py": ("processes/", "method/mpcd/engine/domains/"),
-    "numba.cuda": (),
+    "numba.cuda": ("devices/compile.py",),
+    "cuda.bindings": ("devices/",),
 }
 
 

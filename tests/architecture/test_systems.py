@@ -14,6 +14,9 @@ HOMES = {
     "kernels/made_of.py": {"ExternalFunction"},
     "kernels/store.py": {"/proc", "os.getuid"},
     "scalar/system.py": {"time.CLOCK_MONOTONIC", "ctypes", "ExternalFunction"},
+    "devices/checked.py": {"ctypes"},
+    "devices/emulated.py": {"ctypes"},
+    "devices/host.py": {"ctypes"},
     "method/mpcd/engine/domains/messages/mpi.py": {"ctypes", "ExternalFunction"},
     "io/provenance.py": {"/proc"},
 }

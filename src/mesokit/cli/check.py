@@ -9,7 +9,7 @@ import click
 
 from mesokit.cli.commands import CASE, DEVICE, JSON, SET, THREADS, axes_of, cli, naming, read
 from mesokit.cli.words import READING, in_json, patience, show_table
-from mesokit.devices.named import CPU, require_name
+from mesokit.devices.names import CPU
 from mesokit.errors import CaseError
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ def check(
     """
     from mesokit.case.kind import has_run
     from mesokit.case.warnings import has_memory
+    from mesokit.devices.named import require_name
     from mesokit.seam.method import method_of, on_devices, summary_of
 
     with patience(READING):

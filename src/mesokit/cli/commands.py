@@ -18,7 +18,7 @@ from mesokit import __version__
 from mesokit.cli.completion import keys
 from mesokit.cli.together import take_part
 from mesokit.cli.words import frames_of_parts
-from mesokit.devices.named import CPU
+from mesokit.devices.names import CPU
 from mesokit.errors import CaseError, RunError
 
 if TYPE_CHECKING:

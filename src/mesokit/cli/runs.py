@@ -3,6 +3,7 @@
 import contextlib
 import shutil
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -45,13 +46,12 @@ NOT_REACHED = 3  # exit status of a run that ended before an error was small eno
 def run(
     case: Path,
     settings: dict[str, str],
-    threads: int | None,
-    device: str,
     seed: int | None,
     seeds: int | None,
     output: Path | None,
     overwrite: bool,
     quiet: bool,
+    **by: Any,
 ) -> None:
     """Run CASE. Ctrl-C (or SIGTERM, SIGHUP, SIGUSR1) stops it at a checkpoint; mesokit resume goes
     on.
@@ -76,18 +76,18 @@ def run(
             )
         if here.size > 1:
             raise CaseError(f"--seeds: not on {here.size} ranks; expected one process")
-        given = {"settings": settings, "threads": threads, "device": device, "quiet": quiet}
+        given = {"settings": settings, "quiet": quiet, **by}
         return run_seeds(case, seeds, output, given)
     with patience(READING, quiet):
         full = read(case, settings)
     here.on_root(lambda: _claim(output, overwrite))
     if not quiet:
-        for warning in summary_of(full, threads).warnings:
+        for warning in summary_of(full, by["threads"]).warnings:
             say(f"warning: {warning}")
     from mesokit.run.simulation import Simulation
 
     with naming(case):
-        simulation = Simulation(full, threads=threads, device=device)
+        simulation = Simulation(full, **by)
     here.on_root(lambda: _clear(output))  # only now: what cannot start costs no earlier run
     simulation.write_to(output)
     with stopping(f"mesokit resume {output}"):

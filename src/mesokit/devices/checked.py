@@ -1,7 +1,7 @@
 """An emulated card that looks at every access to memory: for tests of kernels.
 
 All arrays lie in one stretch of memory, at addresses that this process does not have: one of the
-host in a kernel is an error too. Every 4 bytes have a record of who read, wrote and added there in
+host in a kernel is an error too. Every 4 bytes have a record of which threads read, wrote and added there in
 a launch. Two threads of which one writes are a race, in whatever order they ran here.
 """
 
@@ -37,10 +37,10 @@ void memory_is(char *a, uint64_t n, uint8_t *s, int64_t *w, int64_t *r, int64_t 
 void launch_is(int64_t n) { launch_number = n; }
 int64_t *faults_are(void) { return faults; }
 #define MANY (1ll << 32) /* in the place of a thread's number: several of this launch */
-static int others(int64_t who) {
-  return who >> 33 == launch_number && who != (launch_number << 33 | me); }
-static void note(int64_t *who) {
-  *who = others(*who) ? launch_number << 33 | MANY : launch_number << 33 | me; }
+static int others(int64_t thread) {
+  return thread >> 33 == launch_number && thread != (launch_number << 33 | me); }
+static void note(int64_t *thread) {
+  *thread = others(*thread) ? launch_number << 33 | MANY : launch_number << 33 | me; }
 static char none[64];
 static char *seen(uint64_t address, int size, int what) {
   uint64_t at = address - %TAG%ull;
@@ -78,7 +78,7 @@ class Checked(Emulated):
         self._arena = np.zeros(size, np.uint8)
         grains = size // GRAIN
         self._state = np.zeros(grains, np.uint8)
-        self._who = [np.full(grains, -1, np.int64) for _ in range(3)]
+        self._noted = [np.full(grains, -1, np.int64) for _ in range(3)]
         self._sizes: dict[int, int] = {}
         self._free: dict[int, list[int]] = {}
         self._used, self._launches = 0, 0
@@ -136,9 +136,9 @@ class Checked(Emulated):
         """The machine code of a body, for arguments of these types."""
         library = super().kernel(body, given)
         if id(library) not in self._names:
-            arrays: tuple[Any, ...] = self._arena, self._state, *self._who
-            arena, state, *who = (ctypes.c_void_p(array.ctypes.data) for array in arrays)
-            library.memory_is(arena, ctypes.c_uint64(self._arena.size), state, *who)
+            arrays: tuple[Any, ...] = self._arena, self._state, *self._noted
+            arena, state, *noted = (ctypes.c_void_p(array.ctypes.data) for array in arrays)
+            library.memory_is(arena, ctypes.c_uint64(self._arena.size), state, *noted)
             library.faults_are.restype = ctypes.POINTER(ctypes.c_int64)
             source = getattr(body, "__wrapped__", body)
             self._names[id(library)] = f"{source.__name__} {len(self._names)}"

@@ -6,8 +6,8 @@ A process that finds one here loads no compiler of cards.
 
 import functools
 import hashlib
-import importlib
 import os
+import sys
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator
@@ -76,7 +76,7 @@ def _key(body: Callable, kinds: tuple[Any, ...], chip: Chip) -> str | None:
     for name in sorted(modules):
         if name.split(".")[0] == "mesokit":
             continue
-        source = getattr(importlib.import_module(name), "__file__", None)
+        source = getattr(sys.modules.get(name), "__file__", None)
         if source is None:
             return None
         word.update(Path(source).read_bytes())

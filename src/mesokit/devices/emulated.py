@@ -72,7 +72,7 @@ def machine_code_of(source: str) -> Path:
     made.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=made.parent) as here:
         code, library = Path(here) / "kernel.c", Path(here) / "kernel.so"
-        code.write_text(source)
+        code.write_text(source, encoding="utf-8")
         try:
             subprocess.run(
                 ["cc", *OPTIONS, str(code), "-o", str(library), "-lm"],

@@ -4,10 +4,8 @@ from typing import Any
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.devices.device import Device
+from mesokit.devices.names import NAMES
 from mesokit.errors import CaseError
-
-CPU = "cpu"  # the threads of a processor: no device
-NAMES = (CPU, "cuda", "emulated", "host")
 
 
 def require_name(given: Any) -> str:

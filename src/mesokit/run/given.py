@@ -15,7 +15,8 @@ from mesokit.case import methods
 from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, show
 from mesokit.devices.device import Device
-from mesokit.devices.named import CPU, opened, require_name
+from mesokit.devices.named import opened, require_name
+from mesokit.devices.names import CPU
 from mesokit.errors import CaseError
 from mesokit.processes.cores import usable_cores, which_cores
 from mesokit.processes.world import World

@@ -13,7 +13,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import blaming
-from mesokit.devices.named import CPU
+from mesokit.devices.names import CPU
 from mesokit.errors import RunError
 from mesokit.io.one_writer import alone
 from mesokit.io.record_words import shared_work

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from mesokit.case.component import nearest, one_of, show
-from mesokit.devices.named import CPU
+from mesokit.devices.names import CPU
 from mesokit.errors import CaseError
 from mesokit.io.atomic import write_text
 from mesokit.io.optional import package

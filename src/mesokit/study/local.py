@@ -10,7 +10,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from mesokit.devices.named import CPU
+from mesokit.devices.names import CPU
 from mesokit.io.run_directory import RunDirectory
 from mesokit.run.folder import note_failed
 from mesokit.study.work import carry

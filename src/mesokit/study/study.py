@@ -11,7 +11,8 @@ from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import outside_parts
-from mesokit.devices.named import CPU, require_name
+from mesokit.devices.named import require_name
+from mesokit.devices.names import CPU
 from mesokit.errors import CaseError, RunError
 from mesokit.processes.cores import usable_cores
 from mesokit.processes.world import world

@@ -11,7 +11,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from mesokit.devices.named import CPU
+from mesokit.devices.names import CPU
 from mesokit.errors import MesokitError, RunError
 from mesokit.io.atomic import write_text
 from mesokit.io.run_directory import RunDirectory

@@ -33,6 +33,7 @@ class AT(CollisionRule):
 
     conserves: ClassVar[tuple[str, ...]] = ("mass", "momentum")
     isothermal: ClassVar[bool] = True
+    operations: ClassVar[float] = 205.0
     rates: ClassVar[dict[int, float]] = {2: 80.0, 3: 58.0}
 
     def kernel(self, dimension: int, kT: float) -> AT2 | AT3:

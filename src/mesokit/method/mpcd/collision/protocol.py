@@ -48,6 +48,9 @@ class CollisionRule(ABC):
     # million particle-steps per second of one thread, by dimension: for estimates of the run time
     rates: ClassVar[Mapping[int, float]] = {2: 60.0, 3: 33.0}
 
+    # double precision operations of a particle-step in 3D, from machine code of cards
+    operations: ClassVar[float] = 310.0
+
     @abstractmethod
     def kernel(self, dimension: int, kT: float) -> Any:
         """Parameters for the scalar functions below: a NamedTuple, whose class picks them."""

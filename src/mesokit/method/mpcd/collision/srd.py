@@ -46,6 +46,7 @@ class SRD(CollisionRule):
     )
 
     conserves: ClassVar[tuple[str, ...]] = ("mass", "momentum", "energy")
+    operations: ClassVar[float] = 111.0
     rates: ClassVar[dict[int, float]] = {2: 210.0, 3: 130.0}
 
     def kernel(self, dimension: int, kT: float) -> SRD2 | SRD2Uniform | SRD3:

@@ -50,6 +50,7 @@ class SRDPlusA(CollisionRule):
     conserves: ClassVar[tuple[str, ...]] = ("mass", "momentum", "energy", "angular momentum")
     needs_energy: ClassVar[bool] = True
     one_temperature: ClassVar[bool] = False
+    operations: ClassVar[float] = 190.0
     rates: ClassVar[dict[int, float]] = {2: 120.0, 3: 40.0}
 
     def kernel(self, dimension: int, kT: float) -> SRDPlusA2 | SRDPlusA3:

@@ -34,10 +34,7 @@ CARDS = (
     Card("RTX 4090", 24e9, 0.9e12, 6.4e11, 14e-12, False),
     Card("RTX 5090", 32e9, 1.6e12, 8.2e11, 11e-12, False),
 )
-# double precision operations of a particle-step in 3D, counted in machine code
-OPERATIONS = {"srd": 111.0, "at": 205.0, "srd+a": 190.0, "at+a": 310.0}
-MOST_OPERATIONS = 310.0
-IN_2D = 0.6  # times as many
+IN_2D = 0.6  # times as many operations as in 3D
 LAUNCH = 10e-6  # seconds from one launch of a kernel to the next, at least
 REAL, WHOLE = 8, 4  # bytes of a number
 
@@ -56,7 +53,7 @@ def seconds_of_step(numbers: Numbers, card: Card) -> float:
     """Seconds of a step on a card, as predicted."""
     words, d = len(numbers.scales) + 1, numbers.dimension
     traffic = words * card.word + 4 * d * REAL / card.bandwidth
-    operations = OPERATIONS.get(numbers.case.fluid.collision.rule, MOST_OPERATIONS)
+    operations = numbers.case.fluid.collision.operations
     arithmetic = operations * (IN_2D if d == 2 else 1.0) / card.arithmetic
     launches = 4 if numbers.solids is not None else 2
     return max(numbers.n * max(traffic, arithmetic), launches * LAUNCH)

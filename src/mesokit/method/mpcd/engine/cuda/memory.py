@@ -48,10 +48,9 @@ class DeviceMemory:
     def plain(self) -> tuple[Physics, Fluid]:
         """Physics and fluid without what tells kinds of case apart: readings and sorts are compiled
         once for all of them."""
-        physics = self.physics_there._replace(
-            rule=(), thermostat=(), field=(), solid=(), energy=(), molecule=(), coefficients=(),
-            terms=(), scales=(),
-        )  # fmt: skip
+        names = "rule", "thermostat", "field", "solid", "energy", "molecule"
+        nothing: dict[str, Any] = dict.fromkeys((*names, "coefficients", "terms", "scales"), ())
+        physics = self.physics_there._replace(**nothing)
         return physics, self.fluid._replace(neighbour_sums=(), tensor=())
 
     @property

@@ -4,6 +4,8 @@ Sums are spread over rows, one for each block of threads, so that few threads ad
 Whole numbers that could overflow are added up as high and low halves.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from mesokit.case.box import fold
@@ -43,23 +45,33 @@ def add_motion(i, physics, scales, fluid, sums, fastest):
     raise_to(fastest, row, largest_bits(v))
 
 
-@scalar
-def add_to_bin(i, physics, box, fluid, axes, number, scales, copies, sums):
-    """Number, momentum, mass and m v^2 of a particle to its bin, as high and low halves.
+class Bins(NamedTuple):
+    """Bins along one or two axes: `number` holds 1.0 where there is no second axis.
 
-    `sums` is (copies, bins, 2 (d + 3)), `scales` the whole numbers per unit of momentum (d), mass
-    and m v^2.
+    `scales` are the whole numbers per unit of momentum (d), mass and m v^2; `sums` is the address
+    of (copies, bins, 2 (d + 3)) whole numbers.
     """
+
+    axes: tuple
+    number: tuple
+    scales: tuple
+    copies: int
+    sums: int
+
+
+@scalar
+def add_to_bin(i, physics, box, fluid, bins):
+    """Number, momentum, mass and m v^2 of a particle to its bin, as high and low halves."""
     r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
     r, v, _ = fold(box, r, v, scaled(0.0, physics.zero))
     m = mass_of(physics, fluid.kinds, whole(fluid.ident, i))
-    terms = (np.int64(1),) + whole_numbers(rounded(moments_of(m, v), scales))
-    place = np.int64(bin_at(axes, number, box, r))
-    place += i // BLOCK % copies * np.int64(number[0] * number[1])
+    terms = (np.int64(1),) + whole_numbers(rounded(moments_of(m, v), bins.scales))
+    place = np.int64(bin_at(bins.axes, bins.number, box, r))
+    place += i // BLOCK % bins.copies * np.int64(bins.number[0] * bins.number[1])
     for k in range(len(terms)):
         start = (place * len(terms) + k) * 2
-        add_word(sums, start, terms[k] >> HALF)
-        add_word(sums, start + 1, terms[k] & LOW)
+        add_word(bins.sums, start, terms[k] >> HALF)
+        add_word(bins.sums, start + 1, terms[k] & LOW)
 
 
 @scalar
