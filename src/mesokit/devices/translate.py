@@ -352,8 +352,10 @@ class Translation:
         return self._put(to[0], words[-1], f"fabs({value})" if words[-1] == "f64" else plain)
 
     def _do_sqrt(self, words: list[str], to: list[str]) -> str:
-        assert words == ["rn", "f64"]
-        return self._put(to[0], "f64", f"sqrt({self._value(to[1], 'f64')})")
+        kind = words[-1]
+        assert words == ["rn", kind]
+        root = {"f64": "sqrt", "f32": "sqrtf"}[kind]
+        return self._put(to[0], kind, f"{root}({self._value(to[1], kind)})")
 
     def _do_rcp(self, words: list[str], to: list[str]) -> str:
         assert words == ["rn", "f64"]

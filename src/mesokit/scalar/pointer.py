@@ -158,6 +158,49 @@ def element(values, k):
     return lambda values, k: real(values, k)
 
 
+@by_type
+def integer(values, k):
+    """Number k of an array of whole numbers, or of the int64 numbers at an address."""
+    from numba import types
+
+    if isinstance(values, types.Array):
+        return lambda values, k: np.int64(values[k])
+    return lambda values, k: word(values, k)
+
+
+@by_type
+def numbers_in(values, row, width, first, pattern):
+    """Numbers of a row from one column on, as a tuple as long as `pattern`.
+
+    `values` is an array (rows, width), or the address of such float64 numbers.
+    """
+    from numba import types
+
+    if isinstance(values, types.Array):
+        return lambda values, row, width, first, pattern: _in_array(values, row, first, pattern)
+    return lambda values, row, width, first, pattern: reals(values, row * width + first, pattern)
+
+
+@elementwise
+def _in_array(values, row, first, pattern):
+    return "values[row, first + {k}]"
+
+
+@by_type
+def put_numbers_in(values, row, width, first, given):
+    """Store a tuple in such a row from one column on."""
+    from numba import types
+
+    if isinstance(values, types.Array):
+        return lambda values, row, width, first, given: _to_array(values, row, first, given)
+    return lambda values, row, width, first, given: put_reals(values, row * width + first, given)
+
+
+@for_each
+def _to_array(values, row, first, given):
+    return "values[row, first + {k}] = given[{k}]"
+
+
 @elementwise
 def reals(start, index, pattern):
     """float64 numbers from `index` on, as a tuple as long as `pattern`."""

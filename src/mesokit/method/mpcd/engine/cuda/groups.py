@@ -31,3 +31,35 @@ class Fluid(NamedTuple):
     doubtful: int  # cells whose thermostat must draw with care, int32, and how many they are
     doubts: int
     tensor: tuple  # terms of the stress before and after the collision, int64, where it is measured
+
+
+class Planes(NamedTuple):
+    """Planes of cut cells (see `virtual.particles.CellParticles`), so many entries."""
+
+    entries: int
+    normals: int  # float64, a row for each axis
+    heights: int  # float64
+    places: int  # float64, a row for each axis
+    terms: int  # int64
+    pieces: int  # int64
+
+
+class Walls(NamedTuple):
+    """Tables of virtual particles (see `virtual.particles.VirtualParticles`), and their memory."""
+
+    density: float
+    starts: int  # int64
+    cells: int  # int64
+    keys: int  # int64
+    corners: int  # records of d, float64; only for particles one by one
+    pieces: int  # int64, the same
+    outward: int  # records of d, float64
+    probes: int  # records of d, float64
+    terms: int  # int64
+    rates: int  # records of pieces, float64
+    masses: int  # float64
+    number_of_pieces: int
+    planes: Any  # Planes, or () where particles come one by one
+    records: int  # what a cell, or a particle, leaves where walls are measured, float64
+    room: int  # how many records there may be
+    held: int  # how many particles have left one, int32

@@ -17,6 +17,7 @@ from mesokit.method.mpcd.engine.cpu.physics import Physics
 from mesokit.method.mpcd.engine.cuda.groups import Fluid, Kinds
 from mesokit.method.mpcd.engine.cuda.sort import CHUNK
 from mesokit.method.mpcd.engine.cuda.tables import Tables
+from mesokit.method.mpcd.engine.cuda.wall_memory import WallMemory
 from mesokit.method.mpcd.engine.parameters import parameters_of
 from mesokit.method.mpcd.thermostat.protocol import draw
 
@@ -40,6 +41,9 @@ class DeviceMemory:
         self.n, self.number_of_cells = numbers.n, numbers.number_of_cells
         self.bytes_held = 0
         self.fluid = self._allocate()
+        self.walls = None
+        if numbers.virtual != "none":
+            self.walls = WallMemory(numbers, device, self.room, "walls" in self.measures)
         self.solutes: Any = ()
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
@@ -195,10 +199,14 @@ class DeviceMemory:
     @property
     def wall_rates(self) -> Floats:
         """How the fluid's velocity rises with the distance from surfaces."""
-        return np.zeros((2, self.numbers.dimension))
+        if self.walls is None:
+            return np.zeros((2, self.numbers.dimension))
+        return self.walls.rates
 
     def put_wall_rates(self, rates: Floats) -> None:
         """Go on with these `wall_rates`."""
+        if self.walls is not None:
+            self.walls.put_rates(rates)
 
     @property
     def numbers_taken(self) -> int:

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from mesokit.case.case import Case
-from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
 
 def refused(case: Case, ranks: int = 1) -> Iterator[str]:
@@ -14,7 +13,3 @@ def refused(case: Case, ranks: int = 1) -> Iterator[str]:
         yield "fluid.molecule: not on a device yet; expected single particles, or --device cpu"
     if case.solutes is not None:
         yield "solutes: not on a device yet; expected none, or --device cpu"
-    if case.walls and (virtual := Numbers(case).virtual) != "none":
-        yield (
-            f"wall[0].virtual = {virtual!r}: not on a device yet; expected 'none', or --device cpu"
-        )

@@ -16,6 +16,7 @@ from mesokit.method.mpcd.engine.cuda.launch import StepKernel
 from mesokit.method.mpcd.engine.cuda.memory import WHOLE, DeviceMemory
 from mesokit.method.mpcd.engine.cuda.particles import bounce_listed, sweep
 from mesokit.method.mpcd.engine.cuda.plan import Plan
+from mesokit.method.mpcd.engine.cuda.wall_stages import WallStages
 
 Row = NDArray[np.uint64]
 FEW = 2**13  # threads for what few particles or cells need, which they share out
@@ -35,6 +36,14 @@ class Steps:
         self.among_solids = memory.numbers.solids is not None
         if self.among_solids:
             self._bounce = self._of_step(bounce_listed, physics, memory.fluid, FEW)
+        self._walls = None
+        if memory.walls is not None:
+            of_walls = physics._replace(thermostat=(), field=(), molecule=())
+
+            def made(body: Any, *given: Any) -> StepKernel:
+                return self._of_step(body, of_walls, *given)
+
+            self._walls = WallStages(memory, memory.walls, made, FEW)
         if memory.has_doubts:
             self._doubt = self._of_step(collide_doubtful, of_cells, memory.fluid, FEW)
         if memory.fluid.neighbour_sums:
@@ -68,6 +77,10 @@ class Steps:
         self._sweep(memory.n, row)  # v: the collision at t; r, v: t -> t + dt; sums
         if self.among_solids:
             self._bounce(FEW, row)  # the same for those that may meet a surface
+        if self._walls is not None:
+            self._walls.fill(row)  # virtual particles at t + dt
+            self._walls.follow(row)  # flow near surfaces, for the next step
+            self._walls.top_up(row)  # virtual particles up to the mean number of a cell
         if memory.fluid.neighbour_sums:
             self.device.launch(self._fill, self._sums)  # sums for gradients over neighbours
         if memory.has_doubts:
@@ -75,3 +88,5 @@ class Steps:
         self._collide(memory.number_of_cells, row)  # thermostat, rule at t + dt: coefficients
         if memory.has_doubts:
             self._doubt(FEW, row)  # the same where the thermostat must draw with care
+        if self._walls is not None:
+            self._walls.recoil(row)  # what the collision takes from virtual particles

@@ -50,39 +50,67 @@ def with_clearance(case: Case, solids: Solids, held: Held | None = None) -> tupl
     return kernel, (clear, plane_of, planes)
 
 
-def virtual_particles(
-    numbers: Numbers, threads: int, rows: int, domain: Any = None
-) -> VirtualParticles:
-    """Virtual particles of the walls of a case; those of one rank's cells, if they are shared."""
-    case, solids, d = numbers.case, numbers.solids, numbers.dimension
+def tables_of(numbers: Numbers, domain: Any = None) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The tables of VirtualParticles by name, and those of CellParticles.
+
+    The latter are {} where virtual particles come one by one.
+    """
+    solids, d, slit = numbers.solids, numbers.dimension, numbers.slit
     assert solids is not None
-    slit, size = numbers.slit, case.box.size
-    density, rule = case.fluid.density, case.fluid.collision
-    block = None if domain is None else domain.block
+    size, block = numbers.case.box.size, None if domain is None else domain.block
     if slit is not None:
         starts, keys, corners = plates.cut_cells(slit, size, numbers.cells, block)
         pieces, outward, probes, terms = plates.surface_pieces(slit, size)
     else:
         starts, keys, corners = cut_cells(solids, numbers.cells, block)
         pieces, outward, probes, terms = clearance.surface_pieces(solids)
-    entries = int(np.diff(starts).max(initial=0)) // threads + 1  # at most, of a thread
-    per_cell: CellParticles | tuple[()] = ()
-    room = 0
+    tables = {
+        "starts": starts,
+        "cells": np.pad(keys if domain is None else domain.known(keys), (0, LANES)),
+        "keys": np.pad(keys, (0, LANES)),
+        "corners": corners,
+        "pieces": pieces,
+        "outward": outward,
+        "probes": probes,
+        "terms": terms,
+        "rates": np.zeros((len(terms), numbers_of_piece(d))),
+        "masses": numbers.masses_of((np.arange(KINDS) * 7919) % max(numbers.n, 1)),
+    }
+    rule = numbers.case.fluid.collision
     if "angular momentum" in rule.conserves or not numbers.uniform or numbers.virtual == "top-up":
-        mean = density * entries
-        room = int(mean + MANY_DEVIATIONS * math.sqrt(mean)) + LANES
+        return tables, {}
+    if slit is not None:
+        planes = plates.cut_planes(slit, size, corners)
     else:
-        if slit is not None:
-            planes = plates.cut_planes(slit, size, corners)
-        else:
-            planes = cut_planes(solids, numbers.cells, block)
-        normals, heights, places, surfaces, where = planes
+        planes = cut_planes(solids, numbers.cells, block)
+    normals, heights, places, surfaces, where = planes
+    return tables, {
+        "normals": np.ascontiguousarray(normals.T).ravel(),
+        "heights": heights,
+        "places": np.ascontiguousarray(places.T).ravel(),
+        "terms": surfaces,
+        "pieces": pieces[where].astype(np.int64),
+    }
+
+
+def most_particles(density: float, entries: int) -> int:
+    """More virtual particles than so many cut cells will ever have."""
+    mean = density * entries
+    return int(mean + MANY_DEVIATIONS * math.sqrt(mean)) + LANES
+
+
+def virtual_particles(
+    numbers: Numbers, threads: int, rows: int, domain: Any = None
+) -> VirtualParticles:
+    """Virtual particles of the walls of a case; those of one rank's cells, if they are shared."""
+    d, density = numbers.dimension, numbers.case.fluid.density
+    tables, planes = tables_of(numbers, domain)
+    entries = int(np.diff(tables["starts"]).max(initial=0)) // threads + 1  # at most, of a thread
+    per_cell: CellParticles | tuple[()] = ()
+    room = 0 if planes else most_particles(density, entries)
+    if planes:
         per_cell = CellParticles(
-            normals=np.ascontiguousarray(normals.T).ravel(),
-            heights=heights,
-            places=np.ascontiguousarray(places.T).ravel(),
-            terms=surfaces,
-            pieces=pieces[where].astype(np.int64),
+            **planes,
             work=zeros((threads, ROWS * SCRATCH_ROW)),
             state=np.zeros((threads, entries, 3 * d + 1)),
             entry=np.zeros((threads, entries), np.int64),
@@ -91,21 +119,12 @@ def virtual_particles(
     blocks = blocks_for(room)
     return VirtualParticles(
         density=density,
-        starts=starts,
-        cells=np.pad(keys if domain is None else domain.known(keys), (0, LANES)),
-        keys=np.pad(keys, (0, LANES)),
-        corners=corners,
-        pieces=pieces,
-        outward=outward,
-        probes=probes,
-        terms=terms,
-        rates=np.zeros((len(terms), numbers_of_piece(d))),
-        masses=numbers.masses_of((np.arange(KINDS) * 7919) % max(numbers.n, 1)),
+        **tables,
         data=zeros((threads, blocks * rows * ROW)),
         cell=zeros((threads, blocks * BLOCK), np.int32),
         number=zeros((threads, blocks * BLOCK), np.int64),
         term=zeros((threads, blocks * BLOCK), np.int32),
         filled=np.zeros(threads, np.int64),
         per_cell=per_cell,
-        seen=() if domain is None else domain.seen(probes),
+        seen=() if domain is None else domain.seen(tables["probes"]),
     )

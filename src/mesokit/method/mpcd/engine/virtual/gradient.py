@@ -9,6 +9,8 @@ front of each piece, free of solid, give u / h = s + q h at two heights; where t
 free, q is taken for 0.
 """
 
+# ruff: noqa: F401  lines written out as text use what is imported here
+
 import numpy as np
 
 from mesokit.geometry.protocol import distance_above, is_clear_cell, surface_flow
@@ -19,8 +21,9 @@ from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.cpu.strips.terms import read_sums, sums_of_cell
 from mesokit.method.mpcd.engine.virtual.particles import has_gradient
 from mesokit.method.mpcd.engine.where import where
-from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.intrinsics import floor
+from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
+from mesokit.scalar.pointer import integer, numbers_in, put_numbers_in
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 EVERY = 4  # steps from one look at a piece to the next: sooner, the same particles are there
@@ -41,10 +44,14 @@ def numbers_of_piece(d):
 def flow_at(rates, piece, above, zero):
     """Velocity relative to the surface at a height above it, which is negative in the solid."""
     d = len(zero)
-    for k in range(d):
-        rise = rates[piece, k] + above * rates[piece, d + k]
-        zero = with_item(zero, k, above * rise)
-    return zero
+    width = numbers_of_piece(d)
+    slope, bend = numbers_in(rates, piece, width, 0, zero), numbers_in(rates, piece, width, d, zero)
+    return _flow(above, slope, bend)
+
+
+@elementwise
+def _flow(above, slope, bend):
+    return "above * (slope[{k}] + above * bend[{k}])"
 
 
 @where(walls=has_gradient)
@@ -69,11 +76,7 @@ def _follow_all(worker, now, physics, sums, virtual):
     begin, end = share(number, worker.thread, worker.threads)
     # Every fourth piece at each step, in turn. A running mean belongs to one piece and one thread.
     for e in range(turn + EVERY * begin, turn + EVERY * end, EVERY):
-        for p in range(PROBES):
-            good, seen = look(virtual, e, p, physics, now.grid, sums)
-            if good:
-                average_probe(virtual.rates, e, p, seen, physics.zero)
-        straighten(virtual.rates, e, physics.zero)
+        follow_piece(virtual, e, physics, now.grid, sums)
 
 
 @seldom
@@ -95,43 +98,65 @@ def _see(worker, now, physics, sums, virtual):
 
 
 @scalar
+def follow_piece(virtual, e, physics, grid, sums):
+    """Update the means at a piece, and slope and bend. Tables are arrays or addresses."""
+    for p in range(PROBES):
+        good, seen = look(virtual, e, p, physics, grid, sums)
+        if good:
+            average_probe(virtual.rates, e, p, seen, physics.zero)
+    straighten(virtual.rates, e, physics.zero)
+
+
+@scalar
 def probe_at(virtual, e, p, zero):
     """The place of a probe."""
-    for k in range(len(zero)):
-        place = virtual.probes[e, k] + p * APART * virtual.outward[e, k]
-        zero = with_item(zero, k, place)
-    return zero
+    d = len(zero)
+    near = numbers_in(virtual.probes, e, d, 0, zero)
+    return _ahead(p * APART, near, numbers_in(virtual.outward, e, d, 0, zero))
+
+
+@elementwise
+def _ahead(far, near, n):
+    return "near[{k}] + far * n[{k}]"
 
 
 @scalar
 def look(virtual, e, p, physics, grid, sums):
     """Whether the cell of a probe has fluid alone, and then u / h (d) and h there."""
     solid, zero = physics.solid, physics.zero
-    probe, n = probe_at(virtual, e, p, zero), zero
-    middle = probe
-    for k in range(len(zero)):
-        n = with_item(n, k, virtual.outward[e, k])
-        corner = floor(probe[k] + grid.origin[k]) - grid.origin[k]
-        middle = with_item(middle, k, corner + 0.5)
+    probe = probe_at(virtual, e, p, zero)
+    n = numbers_in(virtual.outward, e, len(zero), 0, zero)
+    middle = _middle_of_cell(grid.origin, probe)
     if not is_clear_cell(solid, middle):
         return False, zero + (0.0,)
     found = sums_of_cell(sums, cell_index(probe, grid), physics.terms)
     number, mass, momentum, _, _ = read_sums(physics, found)
     if number < 1.0:
         return False, zero + (0.0,)
-    above = distance_above(solid, virtual.terms[e], middle)
-    u = surface_flow(solid, virtual.terms[e], middle)
+    term = integer(virtual.terms, e)
+    above = distance_above(solid, term, middle)
+    u = surface_flow(solid, term, middle)
     rise = scaled(1.0 / above, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))
     return True, added_scaled(rise, -dot(rise, n), n) + (above,)
+
+
+@elementwise
+def _middle_of_cell(origin, r):
+    return "(floor(r[{k}] + origin[{k}]) - origin[{k}]) + 0.5"
 
 
 @scalar
 def average_probe(rates, e, p, seen, zero):
     """Update the running means of a probe."""
     d = len(zero)
-    place = 2 * d + p * (d + 1)
-    for k in range(d + 1):
-        rates[e, place + k] += MEMORY * (seen[k] - rates[e, place + k])
+    width, place = numbers_of_piece(d), 2 * d + p * (d + 1)
+    before = numbers_in(rates, e, width, place, seen)
+    put_numbers_in(rates, e, width, place, _averaged(before, seen))
+
+
+@elementwise
+def _averaged(before, seen):
+    return "before[{k}] + MEMORY * (seen[{k}] - before[{k}])"
 
 
 @scalar
@@ -139,12 +164,23 @@ def straighten(rates, e, zero):
     """Slope and bend from the means. At the start all means are short of what they will be by the
     same factor, and so then is the slope."""
     d = len(zero)
-    near, far = rates[e, 3 * d], rates[e, 4 * d + 1]
+    width, mean = numbers_of_piece(d), zero + (0.0,)
+    a = numbers_in(rates, e, width, 2 * d, mean)
+    b = numbers_in(rates, e, width, 3 * d + 1, mean)
+    near, far = a[d], b[d]
     apart = far - near
     # Through the two means u / h = s + q h, at heights h in cells, component by component. Where
     # the probes are too close to each other, q is 0.
-    for k in range(d):
-        a, b = rates[e, 2 * d + k], rates[e, 3 * d + 1 + k]
-        bent = apart > LEAST_APART * near
-        rates[e, d + k] = (b - a) / apart if bent else 0.0
-        rates[e, k] = (a * far - b * near) / apart if bent else a
+    bent = apart > LEAST_APART * near
+    put_numbers_in(rates, e, width, 0, _slopes(bent, near, far, apart, a, b, zero))
+    put_numbers_in(rates, e, width, d, _bends(bent, apart, a, b, zero))
+
+
+@elementwise
+def _slopes(bent, near, far, apart, a, b, zero):
+    return "(a[{k}] * far - b[{k}] * near) / apart if bent else a[{k}]"
+
+
+@elementwise
+def _bends(bent, apart, a, b, zero):
+    return "(b[{k}] - a[{k}]) / apart if bent else 0.0"

@@ -6,12 +6,11 @@ cell, whatever its shape. What a gas at the surface's velocity lacks, the fluid'
 (see `gradient`).
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from mesokit.geometry.protocol import homed, nearest_surface, surface_flow, unit_cell
+from mesokit.geometry.protocol import homed, nearest_surface, unit_cell
 from mesokit.geometry.solids.clearance import offset_of
 from mesokit.loops.layout import LANES, ROW, share, strip_at
 from mesokit.loops.threads import barrier
@@ -22,18 +21,16 @@ from mesokit.method.mpcd.engine.cpu.stages import add_strip, bin_strip, collide_
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle, store_particle
 from mesokit.method.mpcd.engine.cpu.strips.terms import number_in_cell
-from mesokit.method.mpcd.engine.virtual.gradient import flow_at
+from mesokit.method.mpcd.engine.virtual.of_cell import thermal_velocity, velocity_in_solid
 from mesokit.method.mpcd.engine.virtual.particles import KINDS, MOST
 from mesokit.method.mpcd.engine.where import where
-from mesokit.scalar.intrinsics import with_item
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
+from mesokit.scalar.pointer import element, integer, numbers_in
 from mesokit.scalar.poisson import poisson_number
 from mesokit.scalar.random import (
     FIRST_VIRTUAL,
     VIRTUAL_NUMBER,
     VIRTUAL_POSITION,
-    VIRTUAL_VELOCITY,
-    normals,
     unit_open,
     words,
 )
@@ -55,45 +52,101 @@ def fill_one_by_one(worker, now, physics, fluid, walls):
     for entry in range(start + begin, start + end):
         key = virtual.keys[entry]
         for j in range(poisson_number(virtual.density, counter, VIRTUAL_NUMBER, key)):
-            drawn = words(counter, VIRTUAL_POSITION, key, j)
-            at = Candidate(worker.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
-            count += place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows)
+            found = drawn_place(virtual, entry, physics, now.grid, counter, key, j)
+            at = Candidate(worker.thread, count, FIRST_VIRTUAL + key * MOST + j)
+            count += note(virtual, at, physics, found, fluid.particles.rows)
     draw_velocities(virtual, count, worker, now, physics, fluid)
 
 
-class Candidate(NamedTuple):
-    """A possible virtual particle: thread, number of those held, cut cell and particle number."""
+class Drawn(NamedTuple):
+    """A place drawn in a cut cell: whether it is in a solid, and then the place, the mean velocity
+    there, the surface, and the mass of a particle. The place is in the image of the cell."""
 
-    thread: int
-    held: int
-    entry: int
-    number: int
+    in_solid: bool
+    r: tuple
+    u: tuple
+    term: int
+    mass: float
 
 
 @seldom
-def place_one(virtual, at, physics, grid, drawn, rows):
-    """Note a virtual particle at a place drawn in a cell, with the mean velocity of the gas there,
-    if that is solid; 1 if it is, else 0."""
+def drawn_place(virtual, entry, physics, grid, counter, key, n):
+    """The nth place that is drawn in a cut cell; tables are arrays or addresses."""
     solid, zero = physics.solid, physics.zero
-    a, b, c, e = drawn
-    r = first((unit_open(a), unit_open(b), unit_open(c)), zero)  # within the cell
-    for k in range(len(zero)):
-        r = with_item(r, k, virtual.corners[at.entry, k] + r[k] - grid.origin[k])
+    a, b, c, e = words(counter, VIRTUAL_POSITION, key, n)
+    corner = numbers_in(virtual.corners, entry, len(zero), 0, zero)
+    within = first((unit_open(a), unit_open(b), unit_open(c)), zero)
+    r = _in_cell(corner, grid.origin, within)
     x = homed(solid, r)
     clear, term, foot = nearest_surface(solid, x)
-    if clear >= 0.0 or at.held >= virtual.term.shape[1]:
+    if clear >= 0.0:
+        return Drawn(False, r, zero, term, 0.0)
+    piece = integer(virtual.pieces, unit_cell(solid, foot))
+    u = velocity_in_solid(virtual, solid, term, piece, clear, x)
+    return Drawn(True, r, u, term, drawn_mass(physics.masses, virtual, e))
+
+
+@elementwise
+def _in_cell(corner, origin, within):
+    return "corner[{k}] + within[{k}] - origin[{k}]"
+
+
+@by_type
+def drawn_mass(masses, virtual, word):
+    """Mass of a virtual particle: that of all, or one of a mixture's, by a random word."""
+    if len(masses) == 1:
+        return lambda masses, virtual, word: masses[0]
+
+    def of_some(masses, virtual, word):
+        return element(virtual.masses, np.int64((word * np.uint64(KINDS)) >> np.uint64(32)))
+
+    return of_some
+
+
+@scalar
+def number_missing(virtual, counter, key, present):
+    """How many particles are missing from a cell that holds so many of the fluid."""
+    a, _, _, _ = words(counter, VIRTUAL_NUMBER, key, 0)
+    return int(virtual.density + unit_open(a)) - present
+
+
+@scalar
+def some_place(virtual, entry, physics, grid, counter, key, j):
+    """A place in the solid part of a cut cell for the jth that is missing, by several tries."""
+    found = drawn_place(virtual, entry, physics, grid, counter, key, j * TRIES)
+    for attempt in range(1, TRIES):
+        if found.in_solid:
+            break
+        found = drawn_place(virtual, entry, physics, grid, counter, key, j * TRIES + attempt)
+    return found
+
+
+@scalar
+def take_particle(physics, impulse, term, r, momentum):
+    """Add the momentum of a virtual particle at r, which is part of the wall in which it lies."""
+    x = homed(physics.solid, r)
+    body_takes(impulse, physics.solid, term, x, momentum, momentum_scale(physics))
+
+
+class Candidate(NamedTuple):
+    """A possible virtual particle: thread, number of those held, and particle number."""
+
+    thread: int
+    held: int
+    number: int
+
+
+@scalar
+def note(virtual, at, physics, found, rows):
+    """Keep a virtual particle, with the mean velocity of the gas; 1, or 0 if it is in no solid."""
+    if not found.in_solid or at.held >= virtual.term.shape[1]:
         return 0
-    u = surface_flow(solid, term, x)
-    piece = virtual.pieces[unit_cell(solid, foot)]
-    if piece >= 0:
-        u = added(u, flow_at(virtual.rates, piece, clear, zero))
     strip, lane = virtual.data[at.thread][strip_at(at.held // LANES, rows)], at.held % LANES
-    store_particle(strip, lane, 0, r + u)
+    store_particle(strip, lane, 0, found.r + found.u)
     if len(physics.masses) == 0:
-        kind = (e * np.uint64(KINDS)) >> np.uint64(32)
-        strip[2 * len(zero) * ROW + lane] = virtual.masses[kind]
+        strip[2 * len(physics.zero) * ROW + lane] = found.mass
     virtual.number[at.thread, at.held] = at.number
-    virtual.term[at.thread, at.held] = term
+    virtual.term[at.thread, at.held] = found.term
     return 1
 
 
@@ -114,8 +167,7 @@ def draw_velocities(virtual, count, worker, now, physics, fluid):
         for i in range(LANES):
             r, u = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
             m = max(lane_mass(physics.masses, strip, i, 2 * d), 1e-300)
-            a, b, c, e = words(now.counter, VIRTUAL_VELOCITY, numbers[i], 0)
-            thermal = scaled(math.sqrt(physics.kT / m), normals(zero, a, b, c, e))
+            thermal = thermal_velocity(physics, m, now.counter, numbers[i])
             store_particle(strip, i, 0, r + added(u, thermal))
         if now.flags & MEASURE_WALLS:
             take_momentum(virtual, worker, physics, s, strip, fluid.taken.impulse[thread], -1.0)
@@ -126,13 +178,12 @@ def draw_velocities(virtual, count, worker, now, physics, fluid):
 @scalar
 def take_momentum(virtual, worker, physics, s, strip, impulse, sign):
     """Add the momentum of virtual particles, as part of the wall in which they lie."""
-    solid, zero, thread = physics.solid, physics.zero, worker.thread
-    d, scale = len(zero), momentum_scale(physics)
+    zero, thread = physics.zero, worker.thread
+    d = len(zero)
     for i in range(min(LANES, virtual.filled[thread] - s * LANES)):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        term = virtual.term[thread, s * LANES + i]
-        m = lane_mass(physics.masses, strip, i, 2 * d)
-        body_takes(impulse, solid, term, homed(solid, r), scaled(sign * m, v), scale)
+        m, term = lane_mass(physics.masses, strip, i, 2 * d), virtual.term[thread, s * LANES + i]
+        take_particle(physics, impulse, term, r, scaled(sign * m, v))
 
 
 def recoil_one_by_one(worker, now, physics, fluid, walls):
@@ -164,13 +215,9 @@ def top_up_walls(worker, now, physics, fluid, walls):
     for entry in range(start + begin, start + end):
         key = virtual.keys[entry]
         present = number_in_cell(physics, fluid.cells.sums, virtual.cells[entry])
-        a, _, _, _ = words(counter, VIRTUAL_NUMBER, key, 0)
-        for j in range(int(virtual.density + unit_open(a)) - present):
-            at = Candidate(worker.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
-            for attempt in range(TRIES):
-                drawn = words(counter, VIRTUAL_POSITION, key, j * TRIES + attempt)
-                if place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows) == 1:
-                    count += 1
-                    break
+        for j in range(number_missing(virtual, counter, key, present)):
+            found = some_place(virtual, entry, physics, now.grid, counter, key, j)
+            at = Candidate(worker.thread, count, FIRST_VIRTUAL + key * MOST + j)
+            count += note(virtual, at, physics, found, fluid.particles.rows)
     draw_velocities(virtual, count, worker, now, physics, fluid)
     barrier(worker)

@@ -8,36 +8,36 @@ from a plane for each cut cell and offset of the grid: tables give its normal an
 which moves with the shift.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from mesokit.geometry.protocol import surface_flow
-from mesokit.geometry.solids.clearance import offset_of, offsets_along
-from mesokit.geometry.solids.cut_cube import share_and_depth
+from mesokit.geometry.solids.clearance import offset_of
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, SCRATCH_ROW, record_length, share, sums_length
-from mesokit.method.mpcd.collision.protocol import collide, contribute
-from mesokit.method.mpcd.engine.cpu.bounce import body_takes
-from mesokit.method.mpcd.engine.cpu.grid import in_cell
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_WALLS
-from mesokit.method.mpcd.engine.cpu.physics import momentum_scale, of_walls
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
-    many_energy_term,
-    many_tally,
-    needs_energy,
+from mesokit.method.mpcd.engine.cpu.physics import of_walls
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import needs_energy
+from mesokit.method.mpcd.engine.cpu.strips.rows import (
+    add_values,
+    load_scratch,
+    load_values,
+    store_scratch,
 )
-from mesokit.method.mpcd.engine.cpu.strips.rows import load_scratch, load_values, store_scratch
-from mesokit.method.mpcd.engine.virtual.gradient import flow_at
-from mesokit.method.mpcd.engine.virtual.particles import MOST
-from mesokit.scalar.fixed_point import ROUNDER_BITS, rounded
-from mesokit.scalar.gamma import gamma_number, likely
-from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.method.mpcd.engine.virtual.of_cell import (
+    brought_together,
+    cut_at,
+    likely_energy,
+    mean_velocity,
+    moved_from_middle,
+    take_gain,
+    thermal_velocity,
+    velocity_in_solid,
+)
+from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.poisson import MOST_MEAN, MOST_NUMBER, none_found, one_more
-from mesokit.scalar.random import FIRST_VIRTUAL, VIRTUAL_NUMBER, VIRTUAL_VELOCITY, normals, words
-from mesokit.scalar.vector import added, added_scaled, dot, scaled
+from mesokit.scalar.random import VIRTUAL_NUMBER, words
 
 ROWS = 14  # of the scratch memory of a batch of cells
 # The first four are followed by as many rows as there are axes.
@@ -50,11 +50,8 @@ def cut_batch(virtual, start, count, solid, grid, work, zero):
 
     The place is in the image of the cell next to the term, which may lie beyond an end of the box.
     """
-    cells, d, moved, many = virtual.per_cell, len(zero), zero, offsets_along(solid, zero)
-    entries = len(cells.heights)
-    for k in range(d):  # the displacement of the grid from the middle of its interval of offsets
-        within = grid.origin[k] * many
-        moved = with_item(moved, k, (within - floor(within) - 0.5) / many)
+    cells, d = virtual.per_cell, len(zero)
+    entries, moved = len(cells.heights), moved_from_middle(solid, grid, zero)
     # Tables have a row for each axis and the batch any start in them, so rows are copied first. The
     # last loop then is one over vectors.
     for k in range(d):
@@ -64,18 +61,13 @@ def cut_batch(virtual, start, count, solid, grid, work, zero):
             work[(THERMAL + k) * SCRATCH_ROW + i] = cells.normals[k * entries + start + i]
     for i in range(count):
         work[HEIGHT * SCRATCH_ROW + i] = cells.heights[start + i]
-    # Plane and cell are shifted against each other by the grid shift of the step, in cells. The
-    # height of the middle over the plane changes, the normal does not.
     for i in range(LANES):
         middle = load_scratch(work, PLACE * SCRATCH_ROW + i, zero)
         n = load_scratch(work, THERMAL * SCRATCH_ROW + i, zero)
-        height = work[HEIGHT * SCRATCH_ROW + i] - dot(n, moved)
-        part, depth = share_and_depth(height, n)
-        # all fluid or all solid: then no particle of the fluid is there
-        cut = (part > 0.0) & (part < 1.0)
-        middle = added_scaled(middle, -1.0, moved)
-        store_scratch(work, PLACE * SCRATCH_ROW + i, added_scaled(middle, -(height + depth), n))
-        work[MEAN * SCRATCH_ROW + i] = virtual.density * part if cut else 0.0
+        height = work[HEIGHT * SCRATCH_ROW + i]
+        mean, depth, place = cut_at(virtual.density, height, n, middle, moved)
+        store_scratch(work, PLACE * SCRATCH_ROW + i, place)
+        work[MEAN * SCRATCH_ROW + i] = mean
         work[DEPTH * SCRATCH_ROW + i] = depth
 
 
@@ -117,17 +109,13 @@ def count_batch(numbers, counter, work):
 @scalar
 def draw_batch(physics, numbers, counter, work):
     """Thermal velocity of one particle, and energy of all about their mean; -1 where in doubt."""
-    zero = physics.zero
     (m,), with_energy = physics.masses, needs_energy(physics.energy)
-    spread = math.sqrt(physics.kT / m)
     for i in range(LANES):
-        a, b, c, e = words(counter, VIRTUAL_VELOCITY, numbers[i], 0)
-        store_scratch(work, THERMAL * SCRATCH_ROW + i, scaled(spread, normals(zero, a, b, c, e)))
+        thermal = thermal_velocity(physics, m, counter, numbers[i])
+        store_scratch(work, THERMAL * SCRATCH_ROW + i, thermal)
     for i in range(LANES if with_energy else 0):
-        _, _, a, b = words(counter, VIRTUAL_NUMBER, numbers[i], 0)
-        freedom = max(len(zero) * (work[NUMBER * SCRATCH_ROW + i] - 1.0), 0.0)
-        value, sure = likely(a, b, freedom)
-        work[INNER * SCRATCH_ROW + i] = value if sure else -1.0
+        number = work[NUMBER * SCRATCH_ROW + i]
+        work[INNER * SCRATCH_ROW + i] = likely_energy(counter, numbers[i], number, physics.zero)
 
 
 def fill_cells(worker, now, physics, fluid, walls):
@@ -175,42 +163,23 @@ class Place(NamedTuple):
 @scalar
 def place_particles(virtual, at, physics, now, sums):
     """The virtual particles of a lane of the batch into their cell."""
-    solid, cells, zero = physics.solid, virtual.per_cell, physics.zero
+    cells, zero = virtual.per_cell, physics.zero
     d, work, entry, i = len(zero), cells.work[at.thread], at.entry, at.lane
     number = np.int64(work[NUMBER * SCRATCH_ROW + i])
-    r = load_scratch(work, PLACE * SCRATCH_ROW + i, zero)
-    term, piece = cells.terms[entry], cells.pieces[entry]
-    u = surface_flow(solid, term, r)
-    if piece >= 0:
-        u = added(u, flow_at(virtual.rates, piece, -work[DEPTH * SCRATCH_ROW + i], zero))
-    (m,), thermal = physics.masses, load_scratch(work, THERMAL * SCRATCH_ROW + i, zero)
-    mass = m * number
-    v = added_scaled(u, 1.0 / math.sqrt(float(number)), thermal)
-    inner = 0.0
-    if needs_energy(physics.energy):
-        inner = work[INNER * SCRATCH_ROW + i]
-        if inner < 0.0:
-            inner = gamma_number(float(d * (number - 1)), now.counter, VIRTUAL_NUMBER, at.key)
-        inner *= 2.0 * physics.kT
-    key = (FIRST_VIRTUAL + at.key * MOST, 0)
-    kept, own = contribute(physics.rule, now.counter, key, mass, v, in_cell(r, now.grid))
-    width = sums_length(len(physics.terms))
-    m_v_squared = inner
-    for k in range(d):
-        m_v_squared += mass * v[k] * v[k]
-    terms = scaled(mass, v) + many_energy_term(physics.energy, m_v_squared) + own
-    tallied = many_tally(physics.energy, number, m_v_squared)
-    start = np.uint64(virtual.cells[entry] * width)
-    sums[start] += tallied
-    whole = rounded(terms, physics.scales)
-    for k in range(len(whole)):  # each is of `number` particles, which are rounded one by one else
-        place = start + np.uint64(k + 1)
-        sums[place] += whole[k] + np.int64(number - 1) * np.int64(ROUNDER_BITS)
+    r, term = load_scratch(work, PLACE * SCRATCH_ROW + i, zero), cells.terms[entry]
+    above, piece = -work[DEPTH * SCRATCH_ROW + i], cells.pieces[entry]
+    u = velocity_in_solid(virtual, physics.solid, term, piece, above, r)
+    v = mean_velocity(u, load_scratch(work, THERMAL * SCRATCH_ROW + i, zero), number)
+    inner = work[INNER * SCRATCH_ROW + i]
+    found = brought_together(physics, now, at.key, number, r, v, inner)
+    start = np.uint64(virtual.cells[entry] * sums_length(len(physics.terms)))
+    sums[start] += found.tallied
+    add_values(sums, start + np.uint64(1), found.terms)
     for k in range(d):
         cells.state[at.thread, at.number, k] = v[k]
-        cells.state[at.thread, at.number, d + k] = kept[k]
+        cells.state[at.thread, at.number, d + k] = found.kept[k]
         cells.state[at.thread, at.number, 2 * d + k] = r[k]
-    cells.state[at.thread, at.number, 3 * d] = mass
+    cells.state[at.thread, at.number, 3 * d] = found.mass
     cells.entry[at.thread, at.number] = entry
 
 
@@ -222,8 +191,8 @@ def recoil_per_cell(worker, now, physics, fluid, walls):
 
 @stage
 def _recoil(worker, now, physics, fluid, virtual):
-    solid, cells, zero = physics.solid, virtual.per_cell, physics.zero
-    d, thread, scale = len(zero), worker.thread, momentum_scale(physics)
+    cells, zero = virtual.per_cell, physics.zero
+    d, thread = len(zero), worker.thread
     coefficients, impulse = fluid.cells.coefficients, fluid.taken.impulse[thread]
     # Momentum that virtual particles gain by the collision at t + dt, which walls take as an
     # impulse. A thread has the cells that it filled; impulses are added as integers.
@@ -236,6 +205,5 @@ def _recoil(worker, now, physics, fluid, virtual):
         entry = cells.entry[thread, i]
         record = np.uint64(virtual.cells[entry] * record_length(len(physics.coefficients)))
         needed = load_values(coefficients, record, physics.coefficients)
-        after = collide(physics.rule, needed, kept, in_cell(r, now.grid))
-        given = scaled(cells.state[thread, i, 3 * d], added_scaled(after, -1.0, v))
-        body_takes(impulse, solid, cells.terms[entry], r, given, scale)
+        particles = cells.state[thread, i, 3 * d], v, kept
+        take_gain(physics, now.grid, needed, particles, r, cells.terms[entry], impulse)

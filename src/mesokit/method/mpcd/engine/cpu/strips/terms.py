@@ -12,6 +12,7 @@ from mesokit.method.mpcd.engine.cpu.strips.cell_energy import Column, energy_ter
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
 from mesokit.scalar.fixed_point import from_fixed, integers, rounded
 from mesokit.scalar.jit import by_type, elementwise, scalar
+from mesokit.scalar.pointer import word, words_at
 from mesokit.scalar.vector import added, scaled
 
 
@@ -21,22 +22,46 @@ def nothing_found(terms):
     return (np.int64(0),) + integers(terms)
 
 
-@scalar
+@by_type
 def sums_of_cell(sums, cell, terms):
-    """The sums of a cell over all threads: the number of particles, and the terms."""
+    """The sums of a cell: the number of particles, and the terms.
+
+    `sums` is an array (threads, ...) over which they are added up, or the address of those of all.
+    """
+    from numba import types
+
+    return _of_all_threads if isinstance(sums, types.Array) else _of_all
+
+
+def _of_all_threads(sums, cell, terms):
     found, start = nothing_found(terms), np.uint64(cell) * np.uint64(sums_length(len(terms)))
     for t in range(sums.shape[0]):
         found = added(found, load_values(sums[t], start, found))
     return found
 
 
-@scalar
+def _of_all(sums, cell, terms):
+    return words_at(sums, np.int64(cell) * sums_length(len(terms)), nothing_found(terms))
+
+
+@by_type
 def number_in_cell(physics, sums, cell):
-    """The number of particles in a cell, over all threads."""
+    """The number of particles in a cell, from the same."""
+    from numba import types
+
+    return _number_of_all_threads if isinstance(sums, types.Array) else _number_of_all
+
+
+def _number_of_all_threads(physics, sums, cell):
     number, start = np.int64(0), cell * sums_length(len(physics.terms))
     for t in range(sums.shape[0]):
         number += untangled(physics.energy, sums[t, start])[0]
     return number
+
+
+def _number_of_all(physics, sums, cell):
+    start = np.int64(cell) * sums_length(len(physics.terms))
+    return untangled(physics.energy, word(sums, start))[0]
 
 
 @scalar
