@@ -1,8 +1,8 @@
 """An emulated card that looks at every access to memory: for tests of kernels.
 
 All arrays lie in one stretch of memory, at addresses that this process does not have: one of the
-host in a kernel is an error too. Every 4 bytes have a record of which threads read, wrote and added there in
-a launch. Two threads of which one writes are a race, in whatever order they ran here.
+host in a kernel is an error too. Every 4 bytes have a record of which threads read, wrote and added
+there in a launch. Two threads of which one writes are a race, in whatever order they ran here.
 """
 
 import ctypes
