@@ -12,7 +12,7 @@ from mesokit.devices.device import Device, words_of
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.cuda import sort as order
 from mesokit.method.mpcd.engine.cuda.memory import REAL, WHOLE, DeviceMemory
-from mesokit.method.mpcd.engine.cuda.particles import wrap
+from mesokit.method.mpcd.engine.cuda.particles import wrap_particle
 from mesokit.method.mpcd.engine.cuda.readings import DeviceReadings
 from mesokit.method.mpcd.engine.cuda.step import Steps
 from mesokit.method.mpcd.engine.running import Running
@@ -55,7 +55,7 @@ class CUDA(Running):
         box, grid = memory.box, memory.grid
         now = self._stages.plan.now._replace(box=box, old=grid, grid=grid)
         physics, plain = memory.plain
-        self._launch(wrap, n, physics, now, plain)
+        self._launch(wrap_particle, n, physics, now, plain)
         self.device.clear(memory.counts[0], lengths[0] * WHOLE)
         rank, counts = memory.spare_short, memory.counts
         self._launch(order.count_in_cell, n, zero, grid, fluid.r, counts[0], rank)

@@ -14,7 +14,7 @@ class Kinds(NamedTuple):
     masses: int
 
 
-class Fluid(NamedTuple):
+class DeviceFluid(NamedTuple):
     """A fluid's arrays."""
 
     r: tuple  # rows of positions along each axis, float64
@@ -44,7 +44,7 @@ class Planes(NamedTuple):
     pieces: int  # int64
 
 
-class Walls(NamedTuple):
+class DeviceWalls(NamedTuple):
     """Tables of virtual particles (see `virtual.particles.VirtualParticles`), and their memory."""
 
     density: float

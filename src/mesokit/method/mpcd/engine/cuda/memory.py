@@ -14,7 +14,7 @@ from mesokit.method.mpcd.engine.cell_gradient import NeighbourSums
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
 from mesokit.method.mpcd.engine.cpu.physics import Physics
-from mesokit.method.mpcd.engine.cuda.groups import Fluid, Kinds
+from mesokit.method.mpcd.engine.cuda.groups import DeviceFluid, Kinds
 from mesokit.method.mpcd.engine.cuda.sort import CHUNK
 from mesokit.method.mpcd.engine.cuda.tables import Tables
 from mesokit.method.mpcd.engine.cuda.wall_memory import WallMemory
@@ -49,7 +49,7 @@ class DeviceMemory:
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
 
     @property
-    def plain(self) -> tuple[Physics, Fluid]:
+    def plain(self) -> tuple[Physics, DeviceFluid]:
         """Physics and fluid without what tells kinds of case apart: readings and sorts are compiled
         once for all of them."""
         names = "rule", "thermostat", "field", "solid", "energy", "molecule"
@@ -77,7 +77,7 @@ class DeviceMemory:
         self.device.free(address)
         self.bytes_held -= max(size, REAL)
 
-    def _allocate(self) -> Fluid:
+    def _allocate(self) -> DeviceFluid:
         n, d, every = self.n, self.numbers.dimension, self.number_of_cells + 1
         self.spare, self.spare_short = self.room(n * REAL), self.room(n * WHOLE)
         self.order = self.room(n * WHOLE)
@@ -91,7 +91,7 @@ class DeviceMemory:
         self.surfaces = 2 if self.numbers.slit else len(self._bodies())
         self.of_surface = d + (1 if d == 2 else 3)
         among_solids = self.numbers.solids is not None
-        return Fluid(
+        return DeviceFluid(
             r=tuple(self.room(n * REAL) for _ in range(d)),
             v=tuple(self.room(n * REAL) for _ in range(d)),
             image=tuple(self.room(n * WHOLE) for _ in range(d)),

@@ -12,7 +12,7 @@ from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_WALLS
 from mesokit.method.mpcd.engine.cpu.strips.terms import brought, number_in_cell
 from mesokit.method.mpcd.engine.cuda.virtual import cut_cell
-from mesokit.method.mpcd.engine.virtual.of_cell import thermal_velocity
+from mesokit.method.mpcd.engine.virtual.of_cell import velocity_of_gas
 from mesokit.method.mpcd.engine.virtual.one_by_one import (
     drawn_place,
     number_missing,
@@ -58,7 +58,7 @@ def top_up_cell(i, physics, now, fluid, walls):
 def bring_virtual(number, found, physics, now, fluid, walls):
     """Add a virtual particle to the sums of its cell; what it has is taken from the wall."""
     r, term, m = found.r, found.term, found.mass
-    v = added(found.u, thermal_velocity(physics, m, now.counter, number))
+    v = added(found.u, velocity_of_gas(physics, m, now.counter, number))
     kept, terms, counted = brought(physics, now, number, m, r, v)
     start = np.int64(cell_index(r, now.grid)) * sums_length(len(physics.terms))
     add_words(fluid.sums, start, (np.int64(optional(counted, 1)),) + terms)
@@ -77,7 +77,7 @@ def record_of_particle(zero):
 
 
 @scalar
-def recoil_one_by_one(thread, physics, now, fluid, walls, threads):
+def recoil_particle(thread, physics, now, fluid, walls, threads):
     """Give the wall what virtual particles have after the collision, every `threads`th of them."""
     zero = physics.zero
     for j in range(thread, min(whole(walls.held, 0), walls.room), threads):

@@ -20,9 +20,9 @@ from mesokit.method.mpcd.engine.cpu.stress import carried
 from mesokit.method.mpcd.engine.cpu.strips.terms import brought
 from mesokit.method.mpcd.engine.cuda.rows import (
     count_crossed,
-    load_row,
-    mass_of,
-    store_row,
+    from_rows,
+    mass_of_number,
+    to_rows,
     uniform_scales,
     whole_numbers,
 )
@@ -44,17 +44,17 @@ def sweep(i, physics, now, fluid):
 
 
 def _sweep_freely(i, physics, now, fluid):
-    r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
-    v = collided(i, physics, now, fluid, r, v)
+    r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
+    v = collide_particle(i, physics, now, fluid, r, v)
     if now.flags & STREAM:
         r, v = fall(r, v, halfway(physics.field, r, v, physics.timestep), physics.timestep)
         v = bring(i, physics, now, fluid, r, v)
-    store_row(fluid.v, i, v)
+    to_rows(fluid.v, i, v)
 
 
 def _sweep_among(i, physics, now, fluid):
-    r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
-    v = collided(i, physics, now, fluid, r, v)
+    r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
+    v = collide_particle(i, physics, now, fluid, r, v)
     if now.flags & STREAM:
         a = halfway(physics.field, r, v, physics.timestep)
         clear = around(physics.solid, r)
@@ -63,11 +63,11 @@ def _sweep_among(i, physics, now, fluid):
         else:
             r, v = fall(r, v, a, physics.timestep)
             v = bring(i, physics, now, fluid, r, v)
-    store_row(fluid.v, i, v)
+    to_rows(fluid.v, i, v)
 
 
 @scalar
-def collided(i, physics, now, fluid, r, v):
+def collide_particle(i, physics, now, fluid, r, v):
     """Velocity after the pending collision, if there is one."""
     if now.flags & COLLIDE:
         start = np.int64(cell_index(r, now.old)) * record_length(len(physics.coefficients))
@@ -96,11 +96,11 @@ def bounce_listed(thread, physics, now, fluid, threads):
     """The same flight with reflections, for every `threads`th particle on the list."""
     for j in range(thread, whole(fluid.waiting, 0), threads):
         i = whole(fluid.listed, j)
-        r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
+        r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
         number = whole(fluid.ident, i)
-        particle = number, mass_of(physics, fluid.kinds, number)
+        particle = number, mass_of_number(physics, fluid.kinds, number)
         r, v = fly_among(physics, now.counter, particle, r, v, fluid.impulse)
-        store_row(fluid.v, i, bring(i, physics, now, fluid, r, v))
+        to_rows(fluid.v, i, bring(i, physics, now, fluid, r, v))
 
 
 @scalar
@@ -110,11 +110,11 @@ def bring(i, physics, now, fluid, r, v):
     count_crossed(fluid.image, i, crossed)
     add_stress(i, physics, now, now.grid, fluid, 0, r, v)
     number = whole(fluid.ident, i)
-    m = mass_of(physics, fluid.kinds, number)
+    m = mass_of_number(physics, fluid.kinds, number)
     kept, terms, counted = brought(physics, now, number, m, r, v)
     start = np.int64(cell_index(r, now.grid)) * sums_length(len(physics.terms))
     add_words(fluid.sums, start, (np.int64(optional(counted, 1)),) + terms)
-    store_row(fluid.r, i, r)
+    to_rows(fluid.r, i, r)
     return kept
 
 
@@ -127,7 +127,7 @@ def add_stress(i, physics, now, grid, fluid, part, r, v):
 
     def add(i, physics, now, grid, fluid, part, r, v):
         if now.flags & MEASURE_STRESS:
-            m = mass_of(physics, fluid.kinds, whole(fluid.ident, i))
+            m = mass_of_number(physics, fluid.kinds, whole(fluid.ident, i))
             flux = carried(now.box, grid, m, r, v)
             terms = whole_numbers(rounded(flux, uniform_scales(physics.stress_scale, flux)))
             add_words(fluid.tensor[part], i // BLOCK * len(terms), terms)
@@ -136,10 +136,10 @@ def add_stress(i, physics, now, grid, fluid, part, r, v):
 
 
 @scalar
-def wrap(i, physics, now, fluid):
+def wrap_particle(i, physics, now, fluid):
     """Move a particle to its image in the box, and count the boxes that it crossed."""
-    r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
+    r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
     r, v, crossed = fold(now.box, r, v, scaled(0.0, r))
-    store_row(fluid.r, i, r)
-    store_row(fluid.v, i, v)
+    to_rows(fluid.r, i, r)
+    to_rows(fluid.v, i, v)
     count_crossed(fluid.image, i, crossed)

@@ -69,7 +69,9 @@ class DeviceReadings(Readings):
         def fill(address: int) -> None:
             physics, fluid = self.memory.plain
             where = physics, self.memory.box, fluid
-            self._run(sums.add_to_bin, self.n, *where, sums.Bins(*two, scales, copies, address))
+            self._run(
+                sums.add_to_bin, self.n, *where, sums.SpreadBins(*two, scales, copies, address)
+            )
 
         found = self._summed((copies, size, d + 3, 2), fill).sum(axis=0)
         high, low = found[..., 0], found[..., 1]

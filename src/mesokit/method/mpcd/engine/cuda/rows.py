@@ -8,13 +8,13 @@ from mesokit.scalar.pointer import put_real, put_whole, real, whole, word
 
 
 @elementwise
-def load_row(rows, i, pattern):
+def from_rows(rows, i, pattern):
     """Number i of each of the rows at these addresses."""
     return "real(rows[{k}], i)"
 
 
 @for_each
-def store_row(rows, i, values):
+def to_rows(rows, i, values):
     """Write a tuple to place i of the rows at these addresses."""
     return "put_real(rows[{k}], i, values[{k}])"
 
@@ -38,7 +38,7 @@ def whole_numbers(values):
 
 
 @by_type
-def mass_of(physics, kinds, number):
+def mass_of_number(physics, kinds, number):
     """Mass of the particle with a number: that of all, or that of its kind."""
     if len(kinds) == 0:
         return lambda physics, kinds, number: physics.masses[0]

@@ -8,7 +8,7 @@ depends on it, since all that is random follows from the numbers of particles.
 import numpy as np
 
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
-from mesokit.method.mpcd.engine.cuda.rows import load_row
+from mesokit.method.mpcd.engine.cuda.rows import from_rows
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.pointer import put_real, put_whole, raise_to, real, take_number, whole
 
@@ -18,7 +18,7 @@ CHUNK = 128  # counts that one thread adds up
 @scalar
 def count_in_cell(i, zero, grid, r, counts, rank):
     """Count a particle in its cell; `rank` becomes the number of those before it there."""
-    cell = np.int64(cell_index(load_row(r, i, zero), grid))
+    cell = np.int64(cell_index(from_rows(r, i, zero), grid))
     put_whole(rank, i, take_number(counts, cell, 1))
 
 
@@ -51,7 +51,7 @@ def lift_by_chunk(k, values, sums):
 @scalar
 def place_in_order(i, zero, grid, r, starts, rank, order):
     """`order[j]` becomes the present place of the particle that belongs at place j."""
-    cell = np.int64(cell_index(load_row(r, i, zero), grid))
+    cell = np.int64(cell_index(from_rows(r, i, zero), grid))
     put_whole(order, whole(starts, cell) + whole(rank, i), i)
 
 

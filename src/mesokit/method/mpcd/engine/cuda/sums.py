@@ -10,7 +10,12 @@ import numpy as np
 
 from mesokit.case.box import fold
 from mesokit.devices.device import BLOCK
-from mesokit.method.mpcd.engine.cuda.rows import load_row, mass_of, uniform_scales, whole_numbers
+from mesokit.method.mpcd.engine.cuda.rows import (
+    from_rows,
+    mass_of_number,
+    uniform_scales,
+    whole_numbers,
+)
 from mesokit.method.mpcd.engine.measure.sums import bin_at, largest_bits, moments_of, part_in_wave
 from mesokit.scalar.fixed_point import (
     HALF,
@@ -38,15 +43,15 @@ from mesokit.scalar.vector import dot, scaled
 def add_motion(i, physics, scales, fluid, sums, fastest):
     """Momentum and m v^2 of a particle to the row of its block (rows, d + 1), and the largest
     component of |v| to that of `fastest` (rows,)."""
-    v, d = load_row(fluid.v, i, physics.zero), len(physics.zero)
-    m, row = mass_of(physics, fluid.kinds, whole(fluid.ident, i)), i // BLOCK
+    v, d = from_rows(fluid.v, i, physics.zero), len(physics.zero)
+    m, row = mass_of_number(physics, fluid.kinds, whole(fluid.ident, i)), i // BLOCK
     momentum = added_quanta(scaled(m, v), scales[0], integers(v))
     add_words(sums, row * (d + 1), momentum + (quanta(m * dot(v, v), scales[d]),))
     raise_to(fastest, row, largest_bits(v))
 
 
-class Bins(NamedTuple):
-    """Bins along one or two axes: `number` holds 1.0 where there is no second axis.
+class SpreadBins(NamedTuple):
+    """SpreadBins along one or two axes: `number` holds 1.0 where there is no second axis.
 
     `scales` are the whole numbers per unit of momentum (d), mass and m v^2; `sums` is the address
     of (copies, bins, 2 (d + 3)) whole numbers.
@@ -62,9 +67,9 @@ class Bins(NamedTuple):
 @scalar
 def add_to_bin(i, physics, box, fluid, bins):
     """Number, momentum, mass and m v^2 of a particle to its bin, as high and low halves."""
-    r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
+    r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
     r, v, _ = fold(box, r, v, scaled(0.0, physics.zero))
-    m = mass_of(physics, fluid.kinds, whole(fluid.ident, i))
+    m = mass_of_number(physics, fluid.kinds, whole(fluid.ident, i))
     terms = (np.int64(1),) + whole_numbers(rounded(moments_of(m, v), bins.scales))
     place = np.int64(bin_at(bins.axes, bins.number, box, r))
     place += i // BLOCK % bins.copies * np.int64(bins.number[0] * bins.number[1])
@@ -84,9 +89,9 @@ def add_to_waves(i, physics, box, fluid, waves, copies, sums):
     turns, many, scale, first, last = waves
     number = whole(fluid.ident, i)
     if first <= number and number < last:
-        r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
+        r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
         r, v, _ = fold(box, r, v, scaled(0.0, physics.zero))
-        m, d = mass_of(physics, fluid.kinds, number), len(physics.zero)
+        m, d = mass_of_number(physics, fluid.kinds, number), len(physics.zero)
         start = i // BLOCK % copies * many
         for w in range(many):
             part = part_in_wave(reals(turns, w * d, physics.zero), m, r, v)
@@ -97,7 +102,7 @@ def add_to_waves(i, physics, box, fluid, waves, copies, sums):
 @scalar
 def look_at_place(j, physics, box, fluid, unwrapped, places, seen):
     """Position, velocity and images of the particle at the jth of these places (int64)."""
-    look(word(places, j), j, physics, box, fluid, unwrapped, seen)
+    look_at_particle(word(places, j), j, physics, box, fluid, unwrapped, seen)
 
 
 @scalar
@@ -105,14 +110,14 @@ def look_by_slot(i, physics, box, fluid, unwrapped, slots, seen):
     """The same of a particle whose number has a slot (int32), which is -1 for all others."""
     slot = whole(slots, whole(fluid.ident, i))
     if slot >= 0:
-        look(i, slot, physics, box, fluid, unwrapped, seen)
+        look_at_particle(i, slot, physics, box, fluid, unwrapped, seen)
 
 
 @scalar
-def look(i, slot, physics, box, fluid, unwrapped, seen):
+def look_at_particle(i, slot, physics, box, fluid, unwrapped, seen):
     """Write the particle at place i to row `slot` of positions, velocities and images (n, d)."""
     d = len(physics.zero)
-    r, v = load_row(fluid.r, i, physics.zero), load_row(fluid.v, i, physics.zero)
+    r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
     crossed = scaled(0.0, physics.zero)
     if unwrapped == 0:
         r, v, crossed = fold(box, r, v, crossed)

@@ -18,8 +18,8 @@ from mesokit.method.mpcd.engine.virtual.of_cell import (
     mean_velocity,
     moved_from_middle,
     take_gain,
-    thermal_velocity,
     velocity_in_solid,
+    velocity_of_gas,
 )
 from mesokit.scalar.jit import elementwise, scalar
 from mesokit.scalar.pointer import add_words, put_real, put_reals, real, reals, word
@@ -48,7 +48,7 @@ def fill_cell(i, physics, now, fluid, walls):
         mean, depth, r = cut_at(walls.density, height, n, middle, moved)
         number = np.int64(poisson_number(mean, now.counter, VIRTUAL_NUMBER, key))
         if number > 0:
-            place_particles(i, physics, now, fluid, walls, (entry, key, number), depth, r)
+            place_in_cell(i, physics, now, fluid, walls, (entry, key, number), depth, r)
         elif now.flags & MEASURE_WALLS:
             put_real(walls.records, i * record_of_cell(zero), 0.0)
 
@@ -66,14 +66,14 @@ def record_of_cell(zero):
 
 
 @scalar
-def place_particles(i, physics, now, fluid, walls, filled, depth, r):
+def place_in_cell(i, physics, now, fluid, walls, filled, depth, r):
     """Add virtual particles at a mean depth and place; `filled`: entry and key of the cell, and
     their number."""
     entry, key, number = filled
     planes, zero, (m,) = walls.planes, physics.zero, physics.masses
     term, piece = word(planes.terms, entry), word(planes.pieces, entry)
     u = velocity_in_solid(walls, physics.solid, term, piece, -depth, r)
-    v = mean_velocity(u, thermal_velocity(physics, m, now.counter, key), number)
+    v = mean_velocity(u, velocity_of_gas(physics, m, now.counter, key), number)
     inner = 0.0
     if needs_energy(physics.energy):
         inner = likely_energy(now.counter, key, float(number), zero)

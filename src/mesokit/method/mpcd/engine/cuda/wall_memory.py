@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import Device
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
-from mesokit.method.mpcd.engine.cuda.groups import Planes, Walls
+from mesokit.method.mpcd.engine.cuda.groups import DeviceWalls, Planes
 from mesokit.method.mpcd.engine.cuda.one_by_one import record_of_particle
 from mesokit.method.mpcd.engine.cuda.virtual import record_of_cell
 from mesokit.method.mpcd.engine.virtual.allocate import most_particles, tables_of
@@ -38,7 +38,7 @@ class WallMemory:
         width = record_of_cell(zero) if planes else record_of_particle(zero)
         if planes:
             tables |= {"corners": (), "pieces": (), "masses": ()}  # of particles one by one
-        self.group = Walls(
+        self.group = DeviceWalls(
             density=density,
             **{name: self._copied(table) for name, table in tables.items()},
             number_of_pieces=self._shape[0],

@@ -10,7 +10,7 @@ from mesokit.method.mpcd.engine.cuda.launch import StepKernel
 from mesokit.method.mpcd.engine.cuda.memory import WHOLE, DeviceMemory
 from mesokit.method.mpcd.engine.cuda.one_by_one import (
     fill_cell_one_by_one,
-    recoil_one_by_one,
+    recoil_particle,
     top_up_cell,
 )
 from mesokit.method.mpcd.engine.cuda.virtual import fill_cell, follow, recoil_cell
@@ -40,7 +40,7 @@ class WallStages:
         if walls.measured and walls.per_cell:
             self._recoil = made(recoil_cell, *given)
         elif walls.measured:
-            self._recoil = made(recoil_one_by_one, *given, few)
+            self._recoil = made(recoil_particle, *given, few)
 
     def fill(self, row: Row) -> None:
         """Virtual particles at t + dt, and their part in the sums of the cells that walls cut."""

@@ -71,7 +71,7 @@ def velocity_in_solid(virtual, solid, term, piece, above, r):
 
 
 @scalar
-def thermal_velocity(physics, m, counter, number):
+def velocity_of_gas(physics, m, counter, number):
     """Thermal velocity of a virtual particle with a number, or of one of a cell with a key."""
     a, b, c, e = words(counter, VIRTUAL_VELOCITY, number, 0)
     return scaled(math.sqrt(physics.kT / m), normals(physics.zero, a, b, c, e))

@@ -21,7 +21,7 @@ from mesokit.method.mpcd.engine.cpu.stages import add_strip, bin_strip, collide_
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle, store_particle
 from mesokit.method.mpcd.engine.cpu.strips.terms import number_in_cell
-from mesokit.method.mpcd.engine.virtual.of_cell import thermal_velocity, velocity_in_solid
+from mesokit.method.mpcd.engine.virtual.of_cell import velocity_in_solid, velocity_of_gas
 from mesokit.method.mpcd.engine.virtual.particles import KINDS, MOST
 from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
@@ -54,7 +54,7 @@ def fill_one_by_one(worker, now, physics, fluid, walls):
         for j in range(poisson_number(virtual.density, counter, VIRTUAL_NUMBER, key)):
             found = drawn_place(virtual, entry, physics, now.grid, counter, key, j)
             at = Candidate(worker.thread, count, FIRST_VIRTUAL + key * MOST + j)
-            count += note(virtual, at, physics, found, fluid.particles.rows)
+            count += note_particle(virtual, at, physics, found, fluid.particles.rows)
     draw_velocities(virtual, count, worker, now, physics, fluid)
 
 
@@ -137,7 +137,7 @@ class Candidate(NamedTuple):
 
 
 @scalar
-def note(virtual, at, physics, found, rows):
+def note_particle(virtual, at, physics, found, rows):
     """Keep a virtual particle, with the mean velocity of the gas; 1, or 0 if it is in no solid."""
     if not found.in_solid or at.held >= virtual.term.shape[1]:
         return 0
@@ -167,7 +167,7 @@ def draw_velocities(virtual, count, worker, now, physics, fluid):
         for i in range(LANES):
             r, u = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
             m = max(lane_mass(physics.masses, strip, i, 2 * d), 1e-300)
-            thermal = thermal_velocity(physics, m, now.counter, numbers[i])
+            thermal = velocity_of_gas(physics, m, now.counter, numbers[i])
             store_particle(strip, i, 0, r + added(u, thermal))
         if now.flags & MEASURE_WALLS:
             take_momentum(virtual, worker, physics, s, strip, fluid.taken.impulse[thread], -1.0)
@@ -218,6 +218,6 @@ def top_up_walls(worker, now, physics, fluid, walls):
         for j in range(number_missing(virtual, counter, key, present)):
             found = some_place(virtual, entry, physics, now.grid, counter, key, j)
             at = Candidate(worker.thread, count, FIRST_VIRTUAL + key * MOST + j)
-            count += note(virtual, at, physics, found, fluid.particles.rows)
+            count += note_particle(virtual, at, physics, found, fluid.particles.rows)
     draw_velocities(virtual, count, worker, now, physics, fluid)
     barrier(worker)

@@ -31,8 +31,8 @@ from mesokit.method.mpcd.engine.virtual.of_cell import (
     mean_velocity,
     moved_from_middle,
     take_gain,
-    thermal_velocity,
     velocity_in_solid,
+    velocity_of_gas,
 )
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
@@ -111,7 +111,7 @@ def draw_batch(physics, numbers, counter, work):
     """Thermal velocity of one particle, and energy of all about their mean; -1 where in doubt."""
     (m,), with_energy = physics.masses, needs_energy(physics.energy)
     for i in range(LANES):
-        thermal = thermal_velocity(physics, m, counter, numbers[i])
+        thermal = velocity_of_gas(physics, m, counter, numbers[i])
         store_scratch(work, THERMAL * SCRATCH_ROW + i, thermal)
     for i in range(LANES if with_energy else 0):
         number = work[NUMBER * SCRATCH_ROW + i]
