@@ -10,9 +10,9 @@ import numpy as np
 from mesokit.case.case import Case
 from mesokit.devices.device import Device, words_of
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-from mesokit.method.mpcd.engine.cuda import sort as order
+from mesokit.method.mpcd.engine.cuda.kernels import sort as order
+from mesokit.method.mpcd.engine.cuda.kernels.particles import wrap_particle
 from mesokit.method.mpcd.engine.cuda.memory import REAL, WHOLE, DeviceMemory
-from mesokit.method.mpcd.engine.cuda.particles import wrap_particle
 from mesokit.method.mpcd.engine.cuda.readings import DeviceReadings
 from mesokit.method.mpcd.engine.cuda.step import Steps
 from mesokit.method.mpcd.engine.running import Running

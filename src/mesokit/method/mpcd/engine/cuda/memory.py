@@ -14,8 +14,8 @@ from mesokit.method.mpcd.engine.cell_gradient import NeighbourSums
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
 from mesokit.method.mpcd.engine.cpu.physics import Physics
-from mesokit.method.mpcd.engine.cuda.groups import DeviceFluid, Kinds
-from mesokit.method.mpcd.engine.cuda.sort import CHUNK
+from mesokit.method.mpcd.engine.cuda.kernels.groups import DeviceFluid, Kinds
+from mesokit.method.mpcd.engine.cuda.kernels.sort import CHUNK
 from mesokit.method.mpcd.engine.cuda.tables import Tables
 from mesokit.method.mpcd.engine.cuda.wall_memory import WallMemory
 from mesokit.method.mpcd.engine.parameters import parameters_of

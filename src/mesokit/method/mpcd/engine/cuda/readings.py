@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import BLOCK, words_of
 from mesokit.method.mpcd.engine.cpu.numbers import Floats
-from mesokit.method.mpcd.engine.cuda import sums
+from mesokit.method.mpcd.engine.cuda.kernels import sums
 from mesokit.method.mpcd.engine.cuda.memory import DeviceMemory
 from mesokit.method.mpcd.engine.measure.readings import Moments, Observed, Readings
 from mesokit.scalar.fixed_point import HALF, LOW

@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import words_of
 from mesokit.method.mpcd.engine.cpu.groups import Course
-from mesokit.method.mpcd.engine.cuda.cells import (
+from mesokit.method.mpcd.engine.cuda.kernels.cells import (
     collide_cell,
     collide_doubtful,
     fill_neighbour_sum,
 )
+from mesokit.method.mpcd.engine.cuda.kernels.particles import bounce_listed, sweep
 from mesokit.method.mpcd.engine.cuda.launch import StepKernel
 from mesokit.method.mpcd.engine.cuda.memory import WHOLE, DeviceMemory
-from mesokit.method.mpcd.engine.cuda.particles import bounce_listed, sweep
 from mesokit.method.mpcd.engine.cuda.plan import Plan
 from mesokit.method.mpcd.engine.cuda.wall_stages import WallStages
 

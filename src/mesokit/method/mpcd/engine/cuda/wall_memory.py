@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import Device
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
-from mesokit.method.mpcd.engine.cuda.groups import DeviceWalls, Planes
-from mesokit.method.mpcd.engine.cuda.one_by_one import record_of_particle
-from mesokit.method.mpcd.engine.cuda.virtual import record_of_cell
+from mesokit.method.mpcd.engine.cuda.kernels.groups import DeviceWalls, Planes
+from mesokit.method.mpcd.engine.cuda.kernels.one_by_one import record_of_particle
+from mesokit.method.mpcd.engine.cuda.kernels.virtual import record_of_cell
 from mesokit.method.mpcd.engine.virtual.allocate import most_particles, tables_of
 from mesokit.method.mpcd.engine.virtual.gradient import EVERY
 from mesokit.scalar.pointer import WORD

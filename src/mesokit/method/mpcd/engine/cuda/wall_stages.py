@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.mpcd.engine.cuda.launch import StepKernel
-from mesokit.method.mpcd.engine.cuda.memory import WHOLE, DeviceMemory
-from mesokit.method.mpcd.engine.cuda.one_by_one import (
+from mesokit.method.mpcd.engine.cuda.kernels.one_by_one import (
     fill_cell_one_by_one,
     recoil_particle,
     top_up_cell,
 )
-from mesokit.method.mpcd.engine.cuda.virtual import fill_cell, follow, recoil_cell
+from mesokit.method.mpcd.engine.cuda.kernels.virtual import fill_cell, follow, recoil_cell
+from mesokit.method.mpcd.engine.cuda.launch import StepKernel
+from mesokit.method.mpcd.engine.cuda.memory import WHOLE, DeviceMemory
 from mesokit.method.mpcd.engine.cuda.wall_memory import WallMemory
 
 Row = NDArray[np.uint64]

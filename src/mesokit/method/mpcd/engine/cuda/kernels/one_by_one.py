@@ -11,7 +11,7 @@ from mesokit.method.mpcd.collision.protocol import collide
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_WALLS
 from mesokit.method.mpcd.engine.cpu.strips.terms import brought, number_in_cell
-from mesokit.method.mpcd.engine.cuda.virtual import cut_cell
+from mesokit.method.mpcd.engine.cuda.kernels.virtual import cut_cell
 from mesokit.method.mpcd.engine.virtual.of_cell import velocity_of_gas
 from mesokit.method.mpcd.engine.virtual.one_by_one import (
     drawn_place,

@@ -8,7 +8,7 @@ depends on it, since all that is random follows from the numbers of particles.
 import numpy as np
 
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
-from mesokit.method.mpcd.engine.cuda.rows import from_rows
+from mesokit.method.mpcd.engine.cuda.kernels.rows import from_rows
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.pointer import put_real, put_whole, raise_to, real, take_number, whole
 

@@ -18,7 +18,7 @@ from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREA
 from mesokit.method.mpcd.engine.cpu.physics import field_of, has_solid
 from mesokit.method.mpcd.engine.cpu.stress import carried
 from mesokit.method.mpcd.engine.cpu.strips.terms import brought
-from mesokit.method.mpcd.engine.cuda.rows import (
+from mesokit.method.mpcd.engine.cuda.kernels.rows import (
     count_crossed,
     from_rows,
     mass_of_number,

@@ -10,7 +10,7 @@ import numpy as np
 
 from mesokit.case.box import fold
 from mesokit.devices.device import BLOCK
-from mesokit.method.mpcd.engine.cuda.rows import (
+from mesokit.method.mpcd.engine.cuda.kernels.rows import (
     from_rows,
     mass_of_number,
     uniform_scales,
