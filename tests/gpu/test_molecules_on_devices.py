@@ -45,11 +45,11 @@ STARS = {
     "walls": [Disk(centre=(8, 6), radius=3, virtual="none", surface=Surface("diffuse"))],
 }  # fmt: skip
 QUICK = {
-    "exact dimers": bulk(2) | PUSHED | {"molecule": Molecule(bond=SPRING, propagation="exact")},
     "sheared chains": SHEARED,
-    "dimers in a slit": SLIT,
 }
 LONG = {
+    "dimers in a slit": SLIT,
+    "exact dimers": bulk(2) | PUSHED | {"molecule": Molecule(bond=SPRING, propagation="exact")},
     "chains": CHAINS,
     "exact dimers in 3D": bulk(3) | {"molecule": Molecule(bond=SPRING, propagation="exact")},
     "stiff rings": STIFF_RINGS,
