@@ -73,7 +73,7 @@ def of_angled(action, potential, work, one, middle, last, lanes, zero):
 
 
 @scalar
-def push(action, potential, separation):
+def pair_kick(action, potential, separation):
     """Change of the velocity of a bead by its bond or pair with another, from which the separation
     leads to it; and whether a bond of that length is broken."""
     square = dot(separation, separation)
@@ -82,7 +82,7 @@ def push(action, potential, separation):
 
 
 @scalar
-def turn(action, potential, before, after):
+def angle_kick(action, potential, before, after):
     """Changes of the velocities of the first and the last bead by the angle of two bonds."""
     _, first, last = bend(potential, before, after)
     return scaled(action.factor, first), scaled(action.factor, last)
@@ -93,10 +93,10 @@ def _(action, potential, work, one, other, lanes, zero):
     a, b, d, broken = work[bead_at(one, zero)], work[bead_at(other, zero)], len(zero), False
     for i in range(WIDTH):
         separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
-        change, torn = push(action, potential, separation)
+        change, breaking = pair_kick(action, potential, separation)
         store_bead(a, i, d, added_scaled(load_bead(a, i, d, zero), -1.0, change))
         store_bead(b, i, d, added(load_bead(b, i, d, zero), change))
-        broken |= torn
+        broken |= breaking
     return broken
 
 
@@ -108,7 +108,7 @@ def _(action, potential, work, one, middle, last, lanes, zero):
         between = load_bead(b, i, 0, zero)
         before = added_scaled(between, -1.0, load_bead(a, i, 0, zero))
         after = added_scaled(load_bead(c, i, 0, zero), -1.0, between)
-        of_a, of_c = turn(action, potential, before, after)
+        of_a, of_c = angle_kick(action, potential, before, after)
         store_bead(a, i, d, added(load_bead(a, i, d, zero), of_a))
         store_bead(b, i, d, added_scaled(load_bead(b, i, d, zero), -1.0, added(of_a, of_c)))
         store_bead(c, i, d, added(load_bead(c, i, d, zero), of_c))

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import words_of
 from mesokit.method.mpcd.engine.cpu.groups import Course
+from mesokit.method.mpcd.engine.cuda.beads.molecules import sweep_molecule
 from mesokit.method.mpcd.engine.cuda.cells import (
     collide_cell,
     collide_doubtful,
@@ -14,7 +15,6 @@ from mesokit.method.mpcd.engine.cuda.cells import (
 )
 from mesokit.method.mpcd.engine.cuda.launch import StepKernel
 from mesokit.method.mpcd.engine.cuda.memory import WHOLE, DeviceMemory
-from mesokit.method.mpcd.engine.cuda.molecules import sweep_molecule
 from mesokit.method.mpcd.engine.cuda.particles import bounce_listed, sweep
 from mesokit.method.mpcd.engine.cuda.plan import Plan
 from mesokit.method.mpcd.engine.cuda.wall_stages import WallStages

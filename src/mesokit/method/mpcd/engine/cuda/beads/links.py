@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from mesokit.method.mpcd.engine.beads.interactions import Virial, note_broken, of_three, of_two
-from mesokit.method.mpcd.engine.beads.links import Kick, of_angled, of_linked, push, turn
+from mesokit.method.mpcd.engine.beads.links import Kick, angle_kick, of_angled, of_linked, pair_kick
 from mesokit.method.mpcd.engine.cuda.groups import DeviceFluid
 from mesokit.method.mpcd.engine.cuda.rows import from_rows, to_rows
 from mesokit.potential.protocol import breaks
@@ -53,7 +53,7 @@ def change_velocity(molecule, bead, factor, change):
 
 @of_linked.register(KickInRows)
 def _(action, potential, work, one, other, lanes, zero):
-    change, broken = push(action.kick, potential, separation_of(work, one, other, zero))
+    change, broken = pair_kick(action.kick, potential, separation_of(work, one, other, zero))
     change_velocity(work, one, -1.0, change)
     change_velocity(work, other, 1.0, change)
     return broken
@@ -63,10 +63,10 @@ def _(action, potential, work, one, other, lanes, zero):
 def _(action, potential, work, one, middle, last, lanes, zero):
     before = separation_of(work, one, middle, zero)
     after = separation_of(work, middle, last, zero)
-    of_one, of_last = turn(action.kick, potential, before, after)
-    change_velocity(work, one, 1.0, of_one)
-    change_velocity(work, middle, -1.0, added(of_one, of_last))
-    change_velocity(work, last, 1.0, of_last)
+    first_kick, last_kick = angle_kick(action.kick, potential, before, after)
+    change_velocity(work, one, 1.0, first_kick)
+    change_velocity(work, middle, -1.0, added(first_kick, last_kick))
+    change_velocity(work, last, 1.0, last_kick)
 
 
 @of_linked.register(VirialInRows)
@@ -83,7 +83,7 @@ def _(action, potential, work, one, middle, last, lanes, zero):
 
 
 @scalar
-def note_torn_bonds(molecule, step, springs, zero):
+def note_broken_links(molecule, step, springs, zero):
     """Find the bonds that are longer than their potential allows (seldom called)."""
     ident, (bonds, _, _) = molecule.fluid.ident, springs.number
     for n in range(bonds):

@@ -17,14 +17,14 @@ from mesokit.method.mpcd.engine.beads.registers import in_image_of
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.physics import field_of, has_solid
-from mesokit.method.mpcd.engine.cuda.links import (
+from mesokit.method.mpcd.engine.cuda.beads.links import (
     KickInRows,
     OneMolecule,
     VirialInRows,
-    note_torn_bonds,
+    note_broken_links,
     place_of,
 )
-from mesokit.method.mpcd.engine.cuda.particles import around, bring, collided
+from mesokit.method.mpcd.engine.cuda.particles import around, bring, collide_particle
 from mesokit.method.mpcd.engine.cuda.rows import from_rows, to_rows
 from mesokit.method.mpcd.molecule import Dimers
 from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
@@ -48,7 +48,7 @@ def sweep_molecule(i, physics, now, fluid):
     for k in range(beads - 1, -1, -1):  # velocities at t, after the collision
         place = i + k * apart
         r, v = from_rows(fluid.r, place, zero), from_rows(fluid.v, place, zero)
-        v = collided(place, physics, now, fluid, r, v)
+        v = collide_particle(place, physics, now, fluid, r, v)
         if now.flags & STREAM:
             r, v = beside_first(before, fluid, i, place, r, v)
             to_rows(fluid.r, place, r)
@@ -121,7 +121,7 @@ def _(moving, step, box, physics, time):
         each_link(VirialInRows(virial), springs, moving.molecule, 1, zero)
     change = KickInRows(Kick(time * springs.inverse_mass))
     if each_link(change, springs, moving.molecule, 1, zero):
-        note_torn_bonds(moving.molecule, step, springs, zero)
+        note_broken_links(moving.molecule, step, springs, zero)
     for k in range(springs.beads):
         place = place_of(moving.molecule, k)
         r, v = from_rows(fluid.r, place, zero), from_rows(fluid.v, place, zero)
@@ -146,21 +146,21 @@ def _(moving, counter, physics, time):
     for k in range(physics.molecule.beads):
         place, fluid = place_of(moving.molecule, k), moving.molecule.fluid
         r, v = from_rows(fluid.r, place, physics.zero), from_rows(fluid.v, place, physics.zero)
-        r, v = drifted(fluid, place, counter, physics, time, r, v)
+        r, v = flown_straight(fluid, place, counter, physics, time, r, v)
         to_rows(fluid.r + fluid.v, place, r + v)
 
 
 @by_type
-def drifted(fluid, place, counter, physics, time, r, v):
+def flown_straight(fluid, place, counter, physics, time, r, v):
     """Place and velocity of a bead a time later, after straight flight with reflections."""
-    return _drifted_among_solids if has_solid(physics) else _drifted
+    return _flown_among_solids if has_solid(physics) else _flown_straight
 
 
-def _drifted(fluid, place, counter, physics, time, r, v):
+def _flown_straight(fluid, place, counter, physics, time, r, v):
     return added_scaled(r, time, v), v
 
 
-def _drifted_among_solids(fluid, place, counter, physics, time, r, v):
+def _flown_among_solids(fluid, place, counter, physics, time, r, v):
     if touches(physics.solid, around(physics.solid, r), r, v, scaled(0.0, r), time):
         number, (m,) = whole(fluid.ident, place), physics.masses
         return flown(physics, time, counter, number, m, r, v, fluid.impulse)
