@@ -148,14 +148,45 @@ def add_word(typing_context: Any, start: Any, index: Any, value: Any) -> Any:
     return types.void(types.int64, types.int64, types.int64), generate
 
 
+def is_address(values: Any) -> bool:
+    """Whether these are numbers at an address and no array, from the numba type."""
+    from numba import types
+
+    return isinstance(values, types.Integer)
+
+
 @by_type
 def element(values, k):
     """Number k of an array, or of the float64 numbers at an address."""
-    from numba import types
+    return (lambda values, k: real(values, k)) if is_address(values) else _element
 
-    if isinstance(values, types.Array):
-        return lambda values, k: values[k]
-    return lambda values, k: real(values, k)
+
+def _element(values, k):
+    return values[k]
+
+
+@by_type
+def entry(values, k):
+    """The same of whole numbers, which are int32 at an address."""
+    return (lambda values, k: whole(values, k)) if is_address(values) else _element
+
+
+@by_type
+def put_entry(values, k, number):
+    """Store one of these."""
+    return (lambda values, k, number: put_whole(values, k, number)) if is_address(values) else _put
+
+
+def _put(values, k, number):
+    values[k] = number
+
+
+@by_type
+def cell_of_table(values, row, column, width):
+    """A whole number of a table (rows, width), an array or int32 at an address."""
+    if is_address(values):
+        return lambda values, row, column, width: whole(values, row * width + column)
+    return lambda values, row, column, width: values[row, column]
 
 
 @by_type

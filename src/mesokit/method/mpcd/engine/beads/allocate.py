@@ -27,6 +27,7 @@ def allocate_beads(given: Solutes, memory: Any) -> Beads:
     differ = any(isinstance(one, Several) for group in potentials[2:5] for one in group)
     terms = (0.0,) * (d + 1 + len(fluid.collision.own_sums(d)))
     return Beads(
+        number=beads,
         mass=given.mass_per_bead(),
         potentials=potentials,
         kinds=kinds if differ else (),

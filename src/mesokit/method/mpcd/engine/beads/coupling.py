@@ -70,20 +70,37 @@ def join_beads(worker, now, physics, fluid, beads):
 def answer_for(beads, leader, physics, counter, cells, cell):
     """The coefficients of the cell of a bead, the first of its list, with all beads in it."""
     found, key = sums_of_cell(cells.sums, cell, physics.terms), key_of(cells.shared, cell)
-    n, mass, momentum, energy, own = read_sums(physics, found)
-    mass = mass if n > 0.5 else 0.0
-    total = n, mass, momentum, energy, own
-    n, mass, momentum, energy, own = with_random_solvent(
-        beads.solvent, beads, physics, counter, key, total
-    )
+    total = without_beads(beads, physics, counter, key, found)
     i = leader
     # Sums of beads are floats, so their order matters: it is that of the list.
     while i != NO_BEAD:
-        given = load_values(beads.given, np.uint64(i * len(beads.terms)), beads.terms)
-        more, its_energy, its_own = parts_of(given, physics.zero)
-        n, mass, momentum = n + 1.0, mass + mass_of(beads, i), added(momentum, more)
-        energy, own = energy + its_energy, added(own, its_own)
+        total = with_bead(beads, i, total, physics.zero)
         i = beads.following[i]
+    return answer_to(physics, counter, key, total)
+
+
+@scalar
+def without_beads(beads, physics, counter, key, found):
+    """The sums of a cell, from those of the fluid in it."""
+    n, mass, momentum, energy, own = read_sums(physics, found)
+    total = n, mass if n > 0.5 else 0.0, momentum, energy, own
+    return with_random_solvent(beads.solvent, beads, physics, counter, key, total)
+
+
+@scalar
+def with_bead(beads, i, total, zero):
+    """The same with one more bead."""
+    n, mass, momentum, energy, own = total
+    given = load_values(beads.given, np.uint64(i * len(beads.terms)), beads.terms)
+    more, its_energy, its_own = parts_of(given, zero)
+    n, mass, momentum = n + 1.0, mass + mass_of(beads, i), added(momentum, more)
+    return n, mass, momentum, energy + its_energy, added(own, its_own)
+
+
+@scalar
+def answer_to(physics, counter, key, total):
+    """The coefficients of the cell with these sums."""
+    n, mass, momentum, energy, own = total
     chance = words(counter, CELL, key, 0)
     x, sure = guess(physics.thermostat, chance[2:], freedom(physics.rule, n))
     if not sure:
@@ -116,7 +133,7 @@ def with_random_solvent(solvent, beads, physics, counter, cell, total):
         if needs_energy(physics.energy):
             inner = gamma_number(float(d * (number - 1)), counter, VIRTUAL_NUMBER, cell)
             energy += m * dot(v, v) + 2.0 * physics.kT * inner
-        key = (FIRST_BEAD + len(beads.cell) + np.int64(cell), 0)
+        key = (FIRST_BEAD + beads.number + np.int64(cell), 0)
         _, drawn = contribute(physics.rule, counter, key, m, v, scaled(0.0, zero))
         own = added(own, drawn)
     return n, mass, momentum, energy, own

@@ -12,6 +12,7 @@ from mesokit.method.mpcd.solutes import Solutes
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.intrinsics import floor
 from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import element
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 
@@ -59,7 +60,9 @@ def from_outside(external, force, i, r):
     (given,) = external
     start = np.uint64(i * len(r))
     away = added_scaled(load_values(given.centre, start, r), -1.0, r)
-    return added_scaled(added(force, load_values(given.force, start, r)), given.stiffness[i], away)
+    return added_scaled(
+        added(force, load_values(given.force, start, r)), element(given.stiffness, i), away
+    )
 
 
 @scalar
@@ -82,7 +85,6 @@ def turned_by_field(external, time, i, v):
     """The velocity of bead i after a time in a magnetic field."""
     (given,) = external
     if len(v) == 2:  # the literal length picks one of the two when it is compiled
-        x, y, _ = turned_about((0.0, 0.0, given.turns[3 * i + 2]), time, (v[0], v[1], 0.0))
+        x, y, _ = turned_about((0.0, 0.0, element(given.turns, 3 * i + 2)), time, (v[0], v[1], 0.0))
         return x, y
-    turns = (given.turns[3 * i], given.turns[3 * i + 1], given.turns[3 * i + 2])
-    return turned_about(turns, time, v)
+    return turned_about(load_values(given.turns, np.uint64(3 * i), v), time, v)

@@ -17,12 +17,12 @@ from mesokit.method.mpcd.engine.beads.moving import MovingBeads
 from mesokit.method.mpcd.engine.beads.verlet import verlet
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
-from mesokit.method.mpcd.engine.cpu.stress import flux
+from mesokit.method.mpcd.engine.cpu.stress import add_terms, flux
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.method.mpcd.engine.domains.beads.halo import assign_beads
 from mesokit.method.mpcd.engine.where import where
-from mesokit.scalar.fixed_point import add_quanta
 from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import entry, put_entry
 from mesokit.scalar.random import FIRST_BEAD
 from mesokit.scalar.vector import added, dot, scaled
 
@@ -36,8 +36,7 @@ def move_solutes(worker, now, physics, fluid, beads):
     together = threads_for(worker, beads)
     first, last = beads_of_thread(worker, together, beads)
     measured, halo = now.flags & MEASURE_STRESS, beads.halo
-    before = now.counter.step - (1 if now.flags & STREAM else 0)
-    box = at_time(now.box, before * physics.timestep)
+    box = box_before(now, physics)
     if now.flags & COLLIDE:  # v: the collision at t
         # Beads take the coefficients of their cells, like particles of the fluid. Each bead belongs
         # to one thread.
@@ -64,6 +63,13 @@ def move_solutes(worker, now, physics, fluid, beads):
 
 
 @scalar
+def box_before(now, physics):
+    """The box in which the pending collision is."""
+    before = now.counter.step - (1 if now.flags & STREAM else 0)
+    return at_time(now.box, before * physics.timestep)
+
+
+@scalar
 def threads_for(worker, beads):
     """The number of threads that move the beads: all, or one if there are few beads."""
     number = state.number_of(beads.halo, len(beads.cell), state.OWN)
@@ -86,7 +92,7 @@ def beads_of_thread(worker, together, beads):
 def collide_bead(beads, i, physics, box, grid, coefficients):
     """Velocity after the collision in its cell."""
     r, v, boxes = state.load_folded(beads, i, box, grid.shift)
-    start = np.uint64(beads.cell[i]) * np.uint64(record_length(len(physics.coefficients)))
+    start = np.uint64(entry(beads.cell, i)) * np.uint64(record_length(len(physics.coefficients)))
     needed = load_values(coefficients, start, physics.coefficients)
     v = collide(physics.rule, needed, v, in_cell(r, grid))
     _, v = unfold(box, r, v, boxes)
@@ -97,7 +103,7 @@ def collide_bead(beads, i, physics, box, grid, coefficients):
 def bin_bead(beads, i, physics, now):
     """The cell of a bead, and what it adds to the sums of that cell."""
     r, v, boxes = state.load_folded(beads, i, now.box, now.grid.shift)
-    beads.cell[i] = cell_index(r, now.grid)
+    put_entry(beads.cell, i, cell_index(r, now.grid))
     key, m = (FIRST_BEAD + i, 0), state.mass_of(beads, i)
     kept, own = contribute(physics.rule, now.counter, key, m, v, in_cell(r, now.grid))
     _, kept = unfold(now.box, r, kept, boxes)
@@ -112,8 +118,8 @@ def add_bead_flux(beads, n, physics, box, shift, when):
 
     `when` is 0 before a collision, 1 after it.
     """
-    tensor, i = beads.tensor[when, n // state.GROUP], state.bead_of(beads.halo, state.OWN, n)
+    i = state.bead_of(beads.halo, state.OWN, n)
     r, v, _ = state.load_folded(beads, i, box, scaled(0.0, shift))
     place, u, _ = fold(box, r, v, shift)
     carried = flux(state.mass_of(beads, i), peculiar(box, r, v), u, added(place, shift))
-    add_quanta(tensor, physics.stress_scale, carried)
+    add_terms(state.tensor_row(beads, when, n, physics.zero), physics.stress_scale, carried)

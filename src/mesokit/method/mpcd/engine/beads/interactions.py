@@ -16,10 +16,12 @@ from mesokit.method.mpcd.engine.cpu.bounce import add_recoil
 from mesokit.method.mpcd.engine.cpu.stress import add_product
 from mesokit.potential.angle import bend
 from mesokit.potential.protocol import breaks, central
-from mesokit.scalar.jit import generic, scalar
+from mesokit.scalar.jit import by_type, generic
+from mesokit.scalar.pointer import raise_to
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 STEP, FIRST, SECOND = 0, 1, 2  # what is noted, of each thread: its step, or 0, and two beads
+LATEST, BEAD_BITS = 1 << 62, 31  # of what all threads share: the first comes to be the largest
 
 
 class BeadForce(NamedTuple):
@@ -139,13 +141,36 @@ def _(action, total, potential, near_wall, r):
     return total
 
 
-@scalar
+@by_type
 def note_broken(faults, step, one, other):
-    """Note step and beads of the first bond that is longer than it can be (seldom called)."""
-    step, one = np.int64(step), np.int64(one)
+    """Note step and beads of the first bond that is longer than it can be (seldom called).
+
+    `faults` is an array of one thread, or the address of two numbers that all threads share. Of
+    the bonds of one step the first is that with the lowest numbers of beads.
+    """
+    from numba import types
+
+    return _note_for_all if isinstance(faults, types.Integer) else _note_own
+
+
+def _note_own(faults, step, one, other):
+    step, one, other = np.int64(step), np.int64(one), np.int64(other)
     earlier = faults[STEP] == 0 or step < faults[STEP]
-    if earlier or (step == faults[STEP] and one < faults[FIRST]):
-        faults[STEP], faults[FIRST], faults[SECOND] = step, one, np.int64(other)
+    lower = one < faults[FIRST] or (one == faults[FIRST] and other < faults[SECOND])
+    if earlier or (step == faults[STEP] and lower):
+        faults[STEP], faults[FIRST], faults[SECOND] = step, one, other
+
+
+def _note_for_all(faults, step, one, other):
+    present = LATEST - np.int64(step)
+    if raise_to(faults, 0, present) <= present:
+        raise_to(faults, 1, LATEST - (np.int64(one) << BEAD_BITS | np.int64(other)))
+
+
+def shared_fault(noted: NDArray[np.int64]) -> tuple[int, int, int]:
+    """Step and beads of the first bond, from the two numbers that threads share; 0 if none."""
+    step, beads = (LATEST - int(number) if number else 0 for number in noted)
+    return step, beads >> BEAD_BITS, beads & (1 << BEAD_BITS) - 1
 
 
 def first_fault(faults: NDArray[np.int64]) -> tuple[int, int, int] | None:

@@ -1,6 +1,6 @@
 """The loop over all bonds, angles and pairs of the molecules of a fluid: kicks or virials.
 
-WIDTH molecules lie side by side (see `registers`), so that a link is gone through once for all.
+In registers some molecules lie side by side, so that a link is gone through once for all of them.
 """
 
 from typing import NamedTuple
@@ -23,86 +23,100 @@ class Kick(NamedTuple):
 
 @scalar
 def each_link(action, molecule, work, lanes, zero):
-    """Apply `action` to all links, in the lanes that hold molecules; true if a bond is broken."""
+    """Apply `action` to all links, in the lanes that hold molecules; true if a bond is broken.
+
+    `work` is memory in which beads are found by their numbers in a molecule.
+    """
     bonds, angles, pairs = molecule.number
     broken, at = False, 0
     # Bonds, angles, pairs, in the order of one table. Each link is done for all lanes at once. A
     # lane has its own molecule, so the order of its sums of floats never depends on threads.
     for _ in range(bonds):
-        a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
-        broken |= of_linked(action, molecule.bond, a, b, lanes, zero)
+        one, other = word(molecule.links, at), word(molecule.links, at + 1)
+        broken |= of_linked(action, molecule.bond, work, one, other, lanes, zero)
         at += 2
     for _ in range(angles):
-        a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
-        of_angle(molecule.angle, action, a, b, work[linked(molecule, at + 2, zero)], lanes, zero)
+        one, middle = word(molecule.links, at), word(molecule.links, at + 1)
+        last = word(molecule.links, at + 2)
+        of_angle(molecule.angle, action, work, one, middle, last, lanes, zero)
         at += 3
     for _ in range(pairs):
-        a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
-        of_pair(molecule.pair, action, a, b, lanes, zero)
+        one, other = word(molecule.links, at), word(molecule.links, at + 1)
+        of_pair(molecule.pair, action, work, one, other, lanes, zero)
         at += 2
     return broken
 
 
-@scalar
-def linked(molecule, at, zero):
-    """The slice of the rows of a bead, by its place in the table of links."""
-    return bead_at(word(molecule.links, at), zero)
-
-
 @where(angle=len)
-def of_angle(angle, action, a, b, c, lanes, zero):
-    """Apply `action` to the angle of beads a, b and c, if there is a potential."""
+def of_angle(angle, action, work, one, middle, last, lanes, zero):
+    """Apply `action` to the angle of three beads, if there is a potential."""
     (potential,) = angle
-    of_angled(action, potential, a, b, c, lanes, zero)
+    of_angled(action, potential, work, one, middle, last, lanes, zero)
 
 
 @where(pair=len)
-def of_pair(pair, action, a, b, lanes, zero):
-    """Apply `action` to the pair of beads a and b, if there is a potential."""
+def of_pair(pair, action, work, one, other, lanes, zero):
+    """Apply `action` to a pair of beads, if there is a potential."""
     (potential,) = pair
-    of_linked(action, potential, a, b, lanes, zero)
+    of_linked(action, potential, work, one, other, lanes, zero)
 
 
 @generic
-def of_linked(action, potential, a, b, lanes, zero):
+def of_linked(action, potential, work, one, other, lanes, zero):
     """Apply `action` to a bond or a pair; true if it is longer than its potential allows."""
 
 
 @generic
-def of_angled(action, potential, a, b, c, lanes, zero):
-    """Apply `action` to the angle between the bonds from bead a to b and from b to c."""
+def of_angled(action, potential, work, one, middle, last, lanes, zero):
+    """Apply `action` to the angle between the bonds from one bead to the middle one and from
+    there to the last."""
+
+
+@scalar
+def pair_kick(action, potential, separation):
+    """Change of the velocity of a bead by its bond or pair with another, from which the separation
+    leads to it; and whether a bond of that length is broken."""
+    square = dot(separation, separation)
+    _, force_over_r = central(potential, square)
+    return scaled(action.factor * force_over_r, separation), breaks(potential, square)
+
+
+@scalar
+def angle_kick(action, potential, before, after):
+    """Changes of the velocities of the first and the last bead by the angle of two bonds."""
+    _, first, last = bend(potential, before, after)
+    return scaled(action.factor, first), scaled(action.factor, last)
 
 
 @of_linked.register(Kick)
-def _(action, potential, a, b, lanes, zero):
-    d, broken = len(zero), False
+def _(action, potential, work, one, other, lanes, zero):
+    a, b, d, broken = work[bead_at(one, zero)], work[bead_at(other, zero)], len(zero), False
     for i in range(WIDTH):
         separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
-        square = dot(separation, separation)
-        _, force_over_r = central(potential, square)
-        change = scaled(action.factor * force_over_r, separation)
+        change, breaking = pair_kick(action, potential, separation)
         store_bead(a, i, d, added_scaled(load_bead(a, i, d, zero), -1.0, change))
         store_bead(b, i, d, added(load_bead(b, i, d, zero), change))
-        broken |= breaks(potential, square)
+        broken |= breaking
     return broken
 
 
 @of_angled.register(Kick)
-def _(action, potential, a, b, c, lanes, zero):
+def _(action, potential, work, one, middle, last, lanes, zero):
+    a, b, c = work[bead_at(one, zero)], work[bead_at(middle, zero)], work[bead_at(last, zero)]
     d = len(zero)
     for i in range(WIDTH):
-        middle = load_bead(b, i, 0, zero)
-        before = added_scaled(middle, -1.0, load_bead(a, i, 0, zero))
-        after = added_scaled(load_bead(c, i, 0, zero), -1.0, middle)
-        _, first, last = bend(potential, before, after)
-        first, last = scaled(action.factor, first), scaled(action.factor, last)
-        store_bead(a, i, d, added(load_bead(a, i, d, zero), first))
-        store_bead(b, i, d, added_scaled(load_bead(b, i, d, zero), -1.0, added(first, last)))
-        store_bead(c, i, d, added(load_bead(c, i, d, zero), last))
+        between = load_bead(b, i, 0, zero)
+        before = added_scaled(between, -1.0, load_bead(a, i, 0, zero))
+        after = added_scaled(load_bead(c, i, 0, zero), -1.0, between)
+        of_a, of_c = angle_kick(action, potential, before, after)
+        store_bead(a, i, d, added(load_bead(a, i, d, zero), of_a))
+        store_bead(b, i, d, added_scaled(load_bead(b, i, d, zero), -1.0, added(of_a, of_c)))
+        store_bead(c, i, d, added(load_bead(c, i, d, zero), of_c))
 
 
 @of_linked.register(Virial)
-def _(action, potential, a, b, lanes, zero):
+def _(action, potential, work, one, other, lanes, zero):
+    a, b = work[bead_at(one, zero)], work[bead_at(other, zero)]
     for i in range(lanes):
         separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
         of_two(action, (), potential, separation, 0, 1)
@@ -110,9 +124,10 @@ def _(action, potential, a, b, lanes, zero):
 
 
 @of_angled.register(Virial)
-def _(action, potential, a, b, c, lanes, zero):
+def _(action, potential, work, one, middle, last, lanes, zero):
+    a, b, c = work[bead_at(one, zero)], work[bead_at(middle, zero)], work[bead_at(last, zero)]
     for i in range(lanes):
-        middle = load_bead(b, i, 0, zero)
-        before = added_scaled(middle, -1.0, load_bead(a, i, 0, zero))
-        after = added_scaled(load_bead(c, i, 0, zero), -1.0, middle)
+        between = load_bead(b, i, 0, zero)
+        before = added_scaled(between, -1.0, load_bead(a, i, 0, zero))
+        after = added_scaled(load_bead(c, i, 0, zero), -1.0, between)
         of_three(action, (), potential, before, after, 1)

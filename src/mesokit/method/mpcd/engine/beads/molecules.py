@@ -106,38 +106,54 @@ def accelerate_bead(physics, time, bead):
 
 def _fly_dimers(worker, now, physics, fluid, batch):
     work, zero = fluid.scratch.beads[worker.thread], physics.zero
-    d, exact, time = len(zero), physics.molecule, physics.timestep
+    d = len(zero)
     a, b = work[bead_at(0, zero)], work[bead_at(1, zero)]
     if now.flags & MEASURE_STRESS:
         _exact_virial(physics, a, b, batch.lanes, fluid.taken.tensor[2, batch.group])
-    # Closed form of a timestep, t -> t + dt. The centre of mass falls freely; the separation of the
-    # beads is a harmonic oscillator.
     for i in range(WIDTH):
         r, v = load_bead(a, i, 0, zero), load_bead(a, i, d, zero)
         r2, v2 = load_bead(b, i, 0, zero), load_bead(b, i, d, zero)
-        separation, rate = added_scaled(r2, -1.0, r), added_scaled(v2, -1.0, v)
-        centre, rise = scaled(0.5, added(r, r2)), scaled(0.5, added(v, v2))
-        pull = halfway(physics.field, centre, rise, time)
-        centre, rise = fall(centre, rise, pull, time)
-        half = scaled(0.5, added_scaled(scaled(exact.cosine, separation), exact.late, rate))
-        turn = scaled(0.5, added_scaled(scaled(exact.cosine, rate), exact.early, separation))
-        store_bead(a, i, 0, added_scaled(centre, -1.0, half) + added_scaled(rise, -1.0, turn))
-        store_bead(b, i, 0, added(centre, half) + added(rise, turn))
+        r, v, r2, v2 = swung(physics, r, v, r2, v2)
+        store_bead(a, i, 0, r + v)
+        store_bead(b, i, 0, r2 + v2)
+
+
+@scalar
+def swung(physics, r, v, r2, v2):
+    """Closed form of a timestep, t -> t + dt, of both beads of a dimer.
+
+    The centre of mass falls freely; the separation of the beads is a harmonic oscillator.
+    """
+    exact, time = physics.molecule, physics.timestep
+    separation, rate = added_scaled(r2, -1.0, r), added_scaled(v2, -1.0, v)
+    centre, rise = scaled(0.5, added(r, r2)), scaled(0.5, added(v, v2))
+    pull = halfway(physics.field, centre, rise, time)
+    centre, rise = fall(centre, rise, pull, time)
+    half = scaled(0.5, added_scaled(scaled(exact.cosine, separation), exact.late, rate))
+    turn = scaled(0.5, added_scaled(scaled(exact.cosine, rate), exact.early, separation))
+    first = added_scaled(centre, -1.0, half), added_scaled(rise, -1.0, turn)
+    return first + (added(centre, half), added(rise, turn))
 
 
 @scalar
 def _exact_virial(physics, a, b, lanes, tensor):
-    """Add the momentum that harmonic bonds hand over in a timestep: -2K times the time integral of
-    the outer product of the vector between the beads with itself."""
-    exact, zero, scale = physics.molecule, physics.zero, physics.stress_scale
-    d = len(zero)
+    """Add the momentum that harmonic bonds hand over in a timestep."""
+    zero, d = physics.zero, len(physics.zero)
     for i in range(lanes):
         separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
         rate = added_scaled(load_bead(b, i, d, zero), -1.0, load_bead(a, i, d, zero))
-        add_product(tensor, scale, exact.separations, separation, separation)
-        add_product(tensor, scale, exact.mixed, separation, rate)
-        add_product(tensor, scale, exact.mixed, rate, separation)
-        add_product(tensor, scale, exact.rates, rate, rate)
+        add_swing(physics, separation, rate, tensor)
+
+
+@scalar
+def add_swing(physics, separation, rate, tensor):
+    """Add that of one bond: -2K times the time integral of the outer product of the vector between
+    the beads with itself."""
+    exact, scale = physics.molecule, physics.stress_scale
+    add_product(tensor, scale, exact.separations, separation, separation)
+    add_product(tensor, scale, exact.mixed, separation, rate)
+    add_product(tensor, scale, exact.mixed, rate, separation)
+    add_product(tensor, scale, exact.rates, rate, rate)
 
 
 @where(physics=has_solid)

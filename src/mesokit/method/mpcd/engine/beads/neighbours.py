@@ -29,7 +29,8 @@ MOVED, OFFSET, MADE = 0, 1, 2  # places in `Neighbours.noted`
 class Neighbours(NamedTuple):
     """Lists, and what they were made from.
 
-    reach: how far the potential and the skin go; skin: how far the list goes beyond the potential.
+    reach: how far the potential and the skin go; skin: how far the list goes beyond the potential;
+    most: room of a list.
     cells (d,), inverse (d,): their number along each axis, and per length of the box.
     cell (beads,): of each bead; head (cells,), following (beads,): the beads of each cell, one
     leading to the next, -1 last.
@@ -41,6 +42,7 @@ class Neighbours(NamedTuple):
 
     reach: float
     skin: float
+    most: int
     cells: tuple[int, ...]
     inverse: tuple[float, ...]
     cell: Any
@@ -64,6 +66,7 @@ def lists_of(
     return Neighbours(
         reach=reach,
         skin=skin,
+        most=max(most, 1),
         cells=tuple(cells),
         inverse=tuple(n / float(length) for n, length in zip(cells, box, strict=True)),
         cell=np.zeros(beads, np.int32),

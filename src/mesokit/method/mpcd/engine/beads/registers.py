@@ -75,9 +75,15 @@ def _take_unfolded(box, strip, image, leader, bead, zero):
     for i in range(WIDTH):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         first, own = load_images(leader, i, zero), load_images(image, i, zero)
-        r, v = unfold(box, r, v, added_scaled(own, -1.0, first))
+        r, v = in_image_of(box, r, v, own, first)
         store_bead(bead, i, 0, r + v)
         store_images(image, i, first)
+
+
+@scalar
+def in_image_of(box, r, v, own, first):
+    """Place and velocity of a bead in the image of another, by the boxes that both are away."""
+    return unfold(box, r, v, added_scaled(own, -1.0, first))
 
 
 @scalar

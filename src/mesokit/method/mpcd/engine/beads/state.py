@@ -10,13 +10,15 @@ from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.pointer import WORD, element, is_address
 
 GROUP = 64  # beads whose part in the stress is added up by itself
 
 
 class Beads(NamedTuple):
-    """Beads, what holds them, and memory for a step.
+    """Beads, what holds them, and memory for a step: arrays, or addresses on a device.
 
+    number: how many there are.
     mass: of a bead, or (beads,) where they differ; potentials: of type `Potentials`; neighbours:
     (Neighbours,) or ().
     kinds: which of several potentials act, see `KindsOfLinks`; () where there is one of each.
@@ -36,6 +38,7 @@ class Beads(NamedTuple):
     halo: owners and copies of beads where ranks share them (`domains.beads.halo.Halo`), or ().
     """
 
+    number: int
     mass: Any
     potentials: tuple
     kinds: tuple
@@ -102,7 +105,7 @@ def mass_of(beads, i):
     """Mass of bead i."""
     if field_of(beads, "mass") == types.float64:
         return lambda beads, i: beads.mass
-    return lambda beads, i: beads.mass[i]
+    return lambda beads, i: element(beads.mass, i)
 
 
 @by_type
@@ -110,7 +113,21 @@ def inverse_mass_of(beads, i):
     """One over the mass of bead i."""
     if field_of(beads, "mass") == types.float64:
         return lambda beads, i: beads.potentials.inverse_mass
-    return lambda beads, i: 1.0 / beads.mass[i]
+    return lambda beads, i: 1.0 / element(beads.mass, i)
+
+
+@by_type
+def tensor_row(beads, when, n, zero):
+    """The part in the stress of the group of bead n, before (0) or after (1) a collision or by
+    forces (2)."""
+    if is_address(field_of(beads, "tensor")):
+        return _tensor_row_at
+    return lambda beads, when, n, zero: beads.tensor[when, n // GROUP]
+
+
+def _tensor_row_at(beads, when, n, zero):
+    groups, d = (beads.number + GROUP - 1) // GROUP, len(zero)
+    return beads.tensor + (when * groups + n // GROUP) * 2 * d * d * WORD
 
 
 @scalar

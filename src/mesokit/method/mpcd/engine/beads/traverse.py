@@ -11,25 +11,26 @@ from mesokit.method.mpcd.engine.beads.state import AROUND, bead_of, load_place, 
 from mesokit.method.mpcd.engine.where import where
 from mesokit.potential.several import Several, potential_at, row_of
 from mesokit.scalar.jit import by_type, elementwise, scalar
+from mesokit.scalar.pointer import cell_of_table, entry
 from mesokit.scalar.vector import added, added_scaled
 
 
 @where("0", kinds=len)
 def kind_of_bond(kinds, n):
     """The kind of solutes that entry n of `Beads.bonds` belongs to."""
-    return kinds.bonds[n]
+    return entry(kinds.bonds, n)
 
 
 @where("0", kinds=len)
 def kind_of_angle(kinds, n):
     """The same of entry n of `Beads.angles`."""
-    return kinds.angles[n]
+    return entry(kinds.angles, n)
 
 
 @where("0", kinds=len)
 def kind_of_pair(kinds, i, j):
     """The number of the pair of the kinds of two beads: all with the first, with the second, ..."""
-    return kinds.beads[i] * kinds.number + kinds.beads[j]
+    return entry(kinds.beads, i) * kinds.number + entry(kinds.beads, j)
 
 
 @by_type
@@ -98,8 +99,8 @@ def nothing(total):
 def each_bond(bond, action, total, beads, i, r):
     """Add all bonds of bead i."""
     (potential,), part = bond, nothing(total)
-    for n in range(beads.bond_starts[i], beads.bond_starts[i + 1]):
-        j = beads.bonds[n]
+    for n in range(entry(beads.bond_starts, i), entry(beads.bond_starts, i + 1)):
+        j = entry(beads.bonds, n)
         separation = added_scaled(r, -1.0, load_place(beads, j, r))
         kind = kind_of_bond(beads.kinds, n)
         part = of_chosen(potential, kind, action, part, separation, i, j)
@@ -110,12 +111,12 @@ def each_bond(bond, action, total, beads, i, r):
 def each_angle(angle, action, total, beads, i, r):
     """Add all angles with bead i."""
     (potential,), part = angle, nothing(total)
-    for n in range(beads.angle_starts[i], beads.angle_starts[i + 1]):
-        a = load_place(beads, beads.angles[n, 0], r)
-        b = load_place(beads, beads.angles[n, 1], r)
-        c = load_place(beads, beads.angles[n, 2], r)
+    for n in range(entry(beads.angle_starts, i), entry(beads.angle_starts, i + 1)):
+        a = load_place(beads, cell_of_table(beads.angles, n, 0, 4), r)
+        b = load_place(beads, cell_of_table(beads.angles, n, 1, 4), r)
+        c = load_place(beads, cell_of_table(beads.angles, n, 2, 4), r)
         before, after = added_scaled(b, -1.0, a), added_scaled(c, -1.0, b)
-        kind, role = kind_of_angle(beads.kinds, n), beads.angles[n, 3]
+        kind, role = kind_of_angle(beads.kinds, n), cell_of_table(beads.angles, n, 3, 4)
         part = of_chosen_angle(potential, kind, action, part, before, after, role)
     return added(total, part)
 
@@ -124,9 +125,11 @@ def each_angle(angle, action, total, beads, i, r):
 def each_pair(pair, action, total, beads, i, r, box):
     """Add all pairs of bead i: those on its list or, if the list is crowded, with all beads."""
     (potential,), (lists,), part = pair, beads.neighbours, nothing(total)
-    count, around = lists.count[i], number_of(beads.halo, len(lists.count), AROUND)
+    count, around = entry(lists.count, i), number_of(beads.halo, beads.number, AROUND)
     for n in range(count if count != CROWDED else around):
-        j = lists.near[i, n] if count != CROWDED else bead_of(beads.halo, AROUND, n)
+        j = bead_of(beads.halo, AROUND, n)
+        if count != CROWDED:
+            j = cell_of_table(lists.near, i, n, lists.most)
         separation = apart(box, load_place(beads, j, r), r)
         kind = kind_of_pair(beads.kinds, i, j)
         part = of_chosen(potential, kind, action, part, separation, i, j)

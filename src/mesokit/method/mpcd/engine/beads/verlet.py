@@ -18,17 +18,28 @@ SUBSTEP_BITS = 40  # sub-steps stand above these bits of a step's number in rand
 @where()
 def verlet(moving, now, physics, substeps):
     """Positions and velocities a timestep later, in sub-steps."""
-    step, time = now.counter.step, physics.timestep / substeps
     # With h = dt / substeps: after kick n, r is at t + n h and v at t + (n + 1/2) h. The first and
     # the last kick are half ones, so v ends at t + dt. The two half kicks between drifts are one.
     for n in range(substeps + 1):
         if n > 0:  # r: t + (n - 1) h -> t + n h
-            at = Counter(now.counter.seed, step + (n << SUBSTEP_BITS))
-            drift(moving, at, physics, time)
-        box = at_time(now.box, (step - 1) * physics.timestep + n * time)
+            drift_in(moving, now, physics, substeps, n)
         # v: the second half of the kick of that sub-step, and the first half of the next one's
-        span = time if 0 < n < substeps else 0.5 * time
-        kick(moving, step, box, physics, span)
+        kick_after(moving, now, physics, substeps, n)
+
+
+@scalar
+def drift_in(moving, now, physics, substeps, n):
+    """The flight of the nth sub-step, from 1."""
+    at = Counter(now.counter.seed, now.counter.step + (n << SUBSTEP_BITS))
+    drift(moving, at, physics, physics.timestep / substeps)
+
+
+@scalar
+def kick_after(moving, now, physics, substeps, n):
+    """The kick after the nth flight, or that before the first one."""
+    step, time = now.counter.step, physics.timestep / substeps
+    box = at_time(now.box, (step - 1) * physics.timestep + n * time)
+    kick(moving, step, box, physics, time if 0 < n < substeps else 0.5 * time)
 
 
 @generic

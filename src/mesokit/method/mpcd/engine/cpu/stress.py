@@ -4,9 +4,10 @@ Whole numbers, `scale` of which are one unit of m v^2: the sums do not depend on
 """
 
 from mesokit.case.box import peculiar
-from mesokit.scalar.fixed_point import add_quanta
+from mesokit.scalar.fixed_point import add_quanta, added_quanta, integers
 from mesokit.scalar.intrinsics import floor  # noqa: F401  the text of a function below uses it
-from mesokit.scalar.jit import elementwise, scalar
+from mesokit.scalar.jit import by_type, elementwise, scalar
+from mesokit.scalar.pointer import add_words
 from mesokit.scalar.vector import added, products, scaled
 
 
@@ -28,7 +29,19 @@ def carried(box, grid, m, r, v):
 @scalar
 def add_product(tensor, scale, factor, a, b):
     """Add a factor times the outer product of two vectors."""
-    add_quanta(tensor, scale, products(scaled(factor, a), b))
+    add_terms(tensor, scale, products(scaled(factor, a), b))
+
+
+@by_type
+def add_terms(tensor, scale, terms):
+    """Add terms, in whole numbers, to an array of one thread or at an address that all share."""
+    from numba import types
+
+    if isinstance(tensor, types.Integer):
+        return lambda tensor, scale, terms: add_words(
+            tensor, 0, added_quanta(terms, scale, integers(terms))
+        )
+    return lambda tensor, scale, terms: add_quanta(tensor, scale, terms)
 
 
 @elementwise

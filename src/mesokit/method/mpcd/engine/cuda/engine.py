@@ -11,7 +11,7 @@ from mesokit.case.case import Case
 from mesokit.devices.device import Device, words_of
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.cuda.kernels import sort as order
-from mesokit.method.mpcd.engine.cuda.kernels.particles import wrap_particle
+from mesokit.method.mpcd.engine.cuda.kernels.particles import wrap_molecule
 from mesokit.method.mpcd.engine.cuda.memory import REAL, WHOLE, DeviceMemory
 from mesokit.method.mpcd.engine.cuda.readings import DeviceReadings
 from mesokit.method.mpcd.engine.cuda.step import Steps
@@ -51,27 +51,34 @@ class CUDA(Running):
 
     def _sorted(self) -> int:
         began, memory, fluid = perf_counter(), self.memory, self.memory.fluid
-        n, zero, lengths = memory.n, memory.physics.zero, memory.lengths
-        box, grid = memory.box, memory.grid
-        now = self._stages.plan.now._replace(box=box, old=grid, grid=grid)
-        physics, plain = memory.plain
-        self._launch(wrap_particle, n, physics, now, plain)
-        self.device.clear(memory.counts[0], lengths[0] * WHOLE)
-        rank, counts = memory.spare_short, memory.counts
-        self._launch(order.count_in_cell, n, zero, grid, fluid.r, counts[0], rank)
-        self.device.clear(memory.most, REAL)
-        chunks = -(-memory.number_of_cells // order.CHUNK)
-        self._launch(order.most_in_cell, chunks, counts[0], memory.number_of_cells, memory.most)
+        zero, lengths, molecules = memory.physics.zero, memory.lengths, fluid.molecules
+        grid, counts, rank = memory.grid, memory.counts, memory.spare_short
+        _, plain = memory.plain
+        self._launch(wrap_molecule, molecules, self.numbers.filling, zero, memory.box, plain)
+        most = self._counted(memory.n)
+        if molecules < memory.n:  # these are sorted by their first beads
+            self._counted(molecules)
         for level in range(len(counts) - 1):
             given = counts[level], lengths[level], counts[level + 1]
             self._launch(order.add_up_chunk, lengths[level + 1], *given)
         for level in reversed(range(len(counts) - 2)):
             self._launch(order.lift_by_chunk, lengths[level], counts[level], counts[level + 1])
         where = counts[0], rank, memory.order
-        self._launch(order.place_in_order, n, zero, grid, fluid.r, *where)
+        self._launch(order.place_in_order, molecules, zero, grid, fluid.r, *where)
         self._reorder()
         self.device.wait()
         self._seconds["sort"] += perf_counter() - began
+        return most
+
+    def _counted(self, places: int) -> int:
+        """Count those at so many places in their cells; the most of one cell."""
+        memory, counts = self.memory, self.memory.counts[0]
+        self.device.clear(counts, memory.lengths[0] * WHOLE)
+        where = memory.physics.zero, memory.grid, memory.fluid.r, counts, memory.spare_short
+        self._launch(order.count_in_cell, places, *where)
+        self.device.clear(memory.most, REAL)
+        chunks = -(-memory.number_of_cells // order.CHUNK)
+        self._launch(order.most_in_cell, chunks, counts, memory.number_of_cells, memory.most)
         return int(memory.row(memory.most, np.int64, 0, 1)[0])
 
     def _reorder(self) -> None:
@@ -79,10 +86,12 @@ class CUDA(Running):
         memory, fluid = self.memory, self.memory.fluid
         moved: dict[int, int] = {}
         for row in (*fluid.r, *fluid.v):
-            self._launch(order.gather_reals, memory.n, row, memory.order, memory.spare)
+            given = row, memory.order, fluid.molecules, memory.spare
+            self._launch(order.gather_reals, memory.n, *given)
             moved[row], memory.spare = memory.spare, row
         for row in (*fluid.image, fluid.ident):
-            self._launch(order.gather_wholes, memory.n, row, memory.order, memory.spare_short)
+            given = row, memory.order, fluid.molecules, memory.spare_short
+            self._launch(order.gather_wholes, memory.n, *given)
             moved[row], memory.spare_short = memory.spare_short, row
         memory.fluid = fluid._replace(
             r=tuple(moved[row] for row in fluid.r),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import BLOCK, Device
 from mesokit.loops.layout import record_length, sums_length
+from mesokit.method.mpcd.engine.beads.interactions import shared_fault
 from mesokit.method.mpcd.engine.cell_gradient import NeighbourSums
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
@@ -22,6 +23,7 @@ from mesokit.method.mpcd.engine.parameters import parameters_of
 from mesokit.method.mpcd.thermostat.protocol import draw
 
 REAL, WHOLE = 8, 4  # bytes of a number
+FAULTS = 2  # numbers that tell of the first bond that tore
 
 
 class DeviceMemory:
@@ -106,6 +108,8 @@ class DeviceMemory:
             doubtful=self.room(every * WHOLE if self.has_doubts else 0),
             doubts=self.room(WHOLE),
             tensor=self._tensor(),
+            molecules=n // self.numbers.beads,
+            faults=self.room(FAULTS * REAL),
         )
 
     @property
@@ -117,7 +121,8 @@ class DeviceMemory:
         """A row for each block of threads, as readings of all have."""
         if "stress" not in self.measures:
             return ()
-        return tuple(self.room(self._stress_numbers * REAL) for _ in range(2))
+        parts = 2 + (self.numbers.beads > 1)
+        return tuple(self.room(self._stress_numbers * REAL) for _ in range(parts))
 
     @property
     def _stress_numbers(self) -> int:
@@ -157,12 +162,14 @@ class DeviceMemory:
         first: int = 0,
     ) -> None:
         """Store these particles (n,), whole molecules, from this molecule on in memory."""
-        start, fluid = first * self.numbers.beads, self.fluid
-        self._write_row(fluid.ident, start, ids, np.int32)
-        for k in range(self.numbers.dimension):
-            self._write_row(fluid.r[k], start, positions[:, k], np.float64)
-            self._write_row(fluid.v[k], start, velocities[:, k], np.float64)
-            self._write_row(fluid.image[k], start, images[:, k], np.int32)
+        fluid, beads = self.fluid, self.numbers.beads
+        for bead in range(beads):
+            start = first + bead * fluid.molecules
+            self._write_row(fluid.ident, start, ids[bead::beads], np.int32)
+            for k in range(self.numbers.dimension):
+                self._write_row(fluid.r[k], start, positions[bead::beads, k], np.float64)
+                self._write_row(fluid.v[k], start, velocities[bead::beads, k], np.float64)
+                self._write_row(fluid.image[k], start, images[bead::beads, k], np.int32)
 
     def _write_row(self, row: int, start: int, values: NDArray[Any], kind: Any) -> None:
         values = np.ascontiguousarray(values, kind)
@@ -189,8 +196,9 @@ class DeviceMemory:
 
     @property
     def places(self) -> NDArray[np.int64]:
-        """Where particles lie."""
-        return np.arange(self.n)
+        """Where particles lie, molecule after molecule."""
+        first = np.arange(self.fluid.molecules)[:, None]
+        return (first + np.arange(self.numbers.beads) * self.fluid.molecules).ravel()
 
     def ids(self, places: NDArray[np.int64]) -> NDArray[np.int64]:
         """Numbers of the particles at these places."""
@@ -230,11 +238,12 @@ class DeviceMemory:
 
     @property
     def faults(self) -> NDArray[np.int64]:
-        """Step and beads of the first bond that tore."""
-        return np.zeros((1, 8), np.int64)
+        """Step and beads of the first bond that tore (1, 3)."""
+        return np.array([shared_fault(self.row(self.fluid.faults, np.int64, 0, FAULTS))])
 
     def clear_faults(self) -> None:
         """Forget bonds that tore."""
+        self.device.clear(self.fluid.faults, FAULTS * REAL)
 
     def taken_by_surfaces(self) -> NDArray[np.int64]:
         """What surfaces took since the last call, as whole numbers."""

@@ -9,7 +9,5 @@ def refused(case: Case, ranks: int = 1) -> Iterator[str]:
     """A line, key first, for each thing in a case that devices cannot do."""
     if ranks > 1:
         yield f"device: not on {ranks} ranks yet; expected one rank, or --device cpu"
-    if case.fluid.molecule is not None:
-        yield "fluid.molecule: not on a device yet; expected single particles, or --device cpu"
     if case.solutes is not None:
         yield "solutes: not on a device yet; expected none, or --device cpu"

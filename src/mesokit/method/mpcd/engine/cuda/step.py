@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import words_of
 from mesokit.method.mpcd.engine.cpu.groups import Course
+from mesokit.method.mpcd.engine.cuda.kernels.beads.molecules import sweep_molecule
 from mesokit.method.mpcd.engine.cuda.kernels.cells import (
     collide_cell,
     collide_doubtful,
@@ -31,9 +32,10 @@ class Steps:
         self.plan = Plan(memory.physics, memory.physics_there, course)
         physics = memory.physics_there._replace(field=self.plan.field)
         of_cells = physics._replace(field=(), solid=(), molecule=())
-        self._sweep = self._of_step(sweep, physics, memory.fluid)
+        self._sweep = self._of_step(self._body(), physics, memory.fluid)
         self._collide = self._of_step(collide_cell, of_cells, memory.fluid)
-        self.among_solids = memory.numbers.solids is not None
+        single = memory.numbers.beads == 1
+        self.among_solids = memory.numbers.solids is not None and single
         if self.among_solids:
             self._bounce = self._of_step(bounce_listed, physics, memory.fluid, FEW)
         self._walls = None
@@ -49,6 +51,9 @@ class Steps:
         if memory.fluid.neighbour_sums:
             self._sums = words_of(memory.number_of_cells, of_cells, memory.fluid)
             self._fill = self.device.kernel(fill_neighbour_sum, (of_cells, memory.fluid))
+
+    def _body(self) -> Any:
+        return sweep_molecule if self.memory.numbers.case.fluid.molecule else sweep
 
     def _of_step(self, body: Any, physics: Any, *more: Any) -> StepKernel:
         made = StepKernel(self.device, body, physics, self.plan, *more)
@@ -67,14 +72,14 @@ class Steps:
         for n in range(course.steps):
             self.step(rows[n])
         if course.steps:
-            self._sweep(self.memory.n, rows[-1])  # v: the collision at the end
+            self._sweep(self.memory.fluid.molecules, rows[-1])  # v: the collision at the end
 
     def step(self, row: Row) -> None:
         """One collision interval: r, v from t to t + dt."""
         memory = self.memory
         if self.among_solids:
             self.device.clear(memory.fluid.waiting, WHOLE)
-        self._sweep(memory.n, row)  # v: the collision at t; r, v: t -> t + dt; sums
+        self._sweep(memory.fluid.molecules, row)  # v: the collision at t; r, v: t -> t + dt; sums
         if self.among_solids:
             self._bounce(FEW, row)  # the same for those that may meet a surface
         if self._walls is not None:

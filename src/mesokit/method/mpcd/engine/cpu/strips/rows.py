@@ -6,6 +6,7 @@ import numpy as np
 
 from mesokit.loops.layout import ROW, SCRATCH_ROW
 from mesokit.scalar.jit import by_type, elementwise, for_each
+from mesokit.scalar.pointer import is_address, put_reals, reals
 
 
 @elementwise
@@ -32,15 +33,31 @@ def store_scratch(scratch, i, values):
     return "scratch[{k} * SCRATCH_ROW + i] = values[{k}]"
 
 
-@elementwise
+@by_type
 def load_values(values, start, pattern):
-    """Consecutive values of an array from `start` (unsigned), as a tuple as long as `pattern`."""
+    """Consecutive values of an array from `start` (unsigned), or float64 numbers at an address, as
+    a tuple as long as `pattern`."""
+    if is_address(values):
+        return lambda values, start, pattern: reals(values, np.int64(start), pattern)
+    return lambda values, start, pattern: _loaded(values, start, pattern)
+
+
+@elementwise
+def _loaded(values, start, pattern):
     return "values[start + np.uint64({k})]"
 
 
-@for_each
+@by_type
 def store_values(values, start, given):
-    """Write a tuple to consecutive places of an array from `start` (unsigned)."""
+    """Write a tuple to consecutive places of an array from `start` (unsigned), or as float64
+    numbers to an address."""
+    if is_address(values):
+        return lambda values, start, given: put_reals(values, np.int64(start), given)
+    return lambda values, start, given: _stored(values, start, given)
+
+
+@for_each
+def _stored(values, start, given):
     return "values[start + np.uint64({k})] = given[{k}]"
 
 

@@ -15,7 +15,7 @@ class Kinds(NamedTuple):
 
 
 class DeviceFluid(NamedTuple):
-    """A fluid's arrays."""
+    """A fluid's arrays. Bead k of molecule i lies at place i + k `molecules` of each row."""
 
     r: tuple  # rows of positions along each axis, float64
     v: tuple  # and of velocities
@@ -30,7 +30,9 @@ class DeviceFluid(NamedTuple):
     waiting: int  # how many are listed, int32
     doubtful: int  # cells whose thermostat must draw with care, int32, and how many they are
     doubts: int
-    tensor: tuple  # terms of the stress before and after the collision, int64, where it is measured
+    tensor: tuple  # terms of the stress before and after the collision, and of bonds, int64, if any
+    molecules: int  # how many there are: as many as particles, if these are single
+    faults: int  # step and beads of the first bond that tore (see `beads.interactions`), int64
 
 
 class Planes(NamedTuple):

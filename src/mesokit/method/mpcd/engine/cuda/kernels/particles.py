@@ -6,16 +6,17 @@ the sums of the cells at t + dt.
 
 import numpy as np
 
-from mesokit.case.box import fold, slide
+from mesokit.case.box import slide
 from mesokit.devices.device import BLOCK
 from mesokit.geometry.protocol import touches
 from mesokit.geometry.solids.bodies import Bodies, cube_of
-from mesokit.loops.layout import record_length, sums_length
+from mesokit.loops.layout import beads_of, record_length, sums_length
 from mesokit.method.mpcd.collision.protocol import collide
 from mesokit.method.mpcd.engine.cpu.bounce import fly_among
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.physics import field_of, has_solid
+from mesokit.method.mpcd.engine.cpu.sort import fold_with
 from mesokit.method.mpcd.engine.cpu.stress import carried
 from mesokit.method.mpcd.engine.cpu.strips.terms import brought
 from mesokit.method.mpcd.engine.cuda.kernels.rows import (
@@ -30,7 +31,6 @@ from mesokit.method.mpcd.streaming import fall, halfway, vector
 from mesokit.scalar.fixed_point import rounded
 from mesokit.scalar.jit import by_type, optional, scalar
 from mesokit.scalar.pointer import add_words, put_whole, reals, short, take_number, whole
-from mesokit.scalar.vector import scaled
 
 
 @by_type
@@ -136,10 +136,12 @@ def add_stress(i, physics, now, grid, fluid, part, r, v):
 
 
 @scalar
-def wrap_particle(i, physics, now, fluid):
-    """Move a particle to its image in the box, and count the boxes that it crossed."""
-    r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
-    r, v, crossed = fold(now.box, r, v, scaled(0.0, r))
-    to_rows(fluid.r, i, r)
-    to_rows(fluid.v, i, v)
-    count_crossed(fluid.image, i, crossed)
+def wrap_molecule(i, filling, zero, box, fluid):
+    """Move a molecule to its image in the box, and count the boxes that each bead crossed."""
+    for k in range(beads_of(filling) - 1, -1, -1):  # the first bead decides for all: it is last
+        place = i + k * fluid.molecules
+        r, v = from_rows(fluid.r, place, zero), from_rows(fluid.v, place, zero)
+        r, v, crossed = fold_with(filling, box, r, v, from_rows(fluid.r, i, zero))
+        to_rows(fluid.r, place, r)
+        to_rows(fluid.v, place, v)
+        count_crossed(fluid.image, place, crossed)

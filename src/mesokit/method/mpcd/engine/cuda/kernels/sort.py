@@ -1,4 +1,5 @@
-"""What one thread does in a sort: particles of one cell come together in memory.
+"""What one thread does in a sort: particles of one cell come together in memory, or molecules whose
+first beads are in one.
 
 A counting sort: counts of cells by atomic additions, their sums in chunks, one thread a chunk, and
 each row gathered into a spare one. The order within a cell is that in which threads came: no bit
@@ -50,18 +51,25 @@ def lift_by_chunk(k, values, sums):
 
 @scalar
 def place_in_order(i, zero, grid, r, starts, rank, order):
-    """`order[j]` becomes the present place of the particle that belongs at place j."""
+    """`order[j]` becomes the present number of the molecule that belongs at number j."""
     cell = np.int64(cell_index(from_rows(r, i, zero), grid))
     put_whole(order, whole(starts, cell) + whole(rank, i), i)
 
 
 @scalar
-def gather_reals(j, row, order, spare):
+def gather_reals(j, row, order, molecules, spare):
     """A row of float64 numbers in the new order."""
-    put_real(spare, j, real(row, whole(order, j)))
+    put_real(spare, j, real(row, place_before(j, order, molecules)))
 
 
 @scalar
-def gather_wholes(j, row, order, spare):
+def gather_wholes(j, row, order, molecules, spare):
     """A row of int32 numbers in the new order."""
-    put_whole(spare, j, whole(row, whole(order, j)))
+    put_whole(spare, j, whole(row, place_before(j, order, molecules)))
+
+
+@scalar
+def place_before(j, order, molecules):
+    """The present place of the particle that belongs at place j."""
+    first = j // molecules * molecules if j >= molecules else 0  # place of that bead of the first
+    return first + whole(order, j - first)
