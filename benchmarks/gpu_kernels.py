@@ -2,8 +2,9 @@
 
     python -m benchmarks.gpu_kernels [chip ...]        such as 80 90 120
 
-A table in Markdown: instructions of the text (PTX), registers, bytes of spills and of the thread's
-own memory, double precision operations, and accesses to global memory.
+A table in Markdown: instructions of the text (PTX), registers of each chip, bytes of spills and of
+the thread's own memory, double precision operations, and accesses to global memory; an addition of a
+whole record is one.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ from mesokit import (
     Case,
     Disk,
     Fluid,
+    Harmonic,
     MaxwellBoltzmann,
+    Molecule,
     NoThermostat,
     Plates,
     Run,
@@ -52,6 +55,7 @@ CASES: dict[str, tuple[int, dict[str, Any]]] = {
     "3D sphere, thermostat": (
         3, HELD | {"walls": [Sphere(centre=[4, 4, 4], radius=2)], "force": FORCE[3]},
     ),
+    "3D dimers, thermostat": (3, HELD | {"molecule": Molecule(bond=Harmonic(K=4.0))}),
     "2D disk, thermostat": (
         2, HELD | {"walls": [Disk(centre=[4, 4], radius=2)], "force": FORCE[2]},
     ),
@@ -72,10 +76,11 @@ class Needs(NamedTuple):
 
 
 class Listing(Host):
-    """A device that notes the kernels that an engine asks for."""
+    """A device that notes the kernels that an engine asks for, for a chip."""
 
-    def __init__(self) -> None:
+    def __init__(self, chip: tuple[int, int]) -> None:
         super().__init__()
+        self.chip = chip
         self.asked: dict[str, tuple[Any, Any]] = {}
 
     def kernel(self, body: Any, given: tuple[Any, ...]) -> Any:
@@ -92,9 +97,9 @@ def case_of(name: str, cells: int = 8) -> Case:
     return Case(run=Run(steps=1), box=box, fluid=Fluid(**parts), walls=walls)
 
 
-def kernels_of(name: str) -> dict[str, tuple[Any, Any]]:
+def kernels_of(name: str, chip: tuple[int, int]) -> dict[str, tuple[Any, Any]]:
     """Bodies and types of arguments of the kernels of a case's step, by their names."""
-    listing = Listing()
+    listing = Listing(chip)
     CUDA(case_of(name), listing, ())
     return listing.asked
 
@@ -119,25 +124,28 @@ def needs(body: Any, kinds: Any, chip: tuple[int, int]) -> Needs:
         double=number(r"(add|sub|mul|fma|div|sqrt|rcp|setp\.\w+)[.\w]*f64"),
         loads=number(r"ld\.global"),
         stores=number(r"st\.global"),
-        additions=number(r"(red|atom)\."),
+        additions=len(re.findall(r"\b(?:red|atom)\.[\w.]+|cp\.reduce", new.ptx)),
     )
 
 
-def table(chips: tuple[tuple[int, int], ...] = CHIPS) -> Iterator[tuple[str, str, Any, Needs]]:
-    """Case, kernel, chip and needs of every kernel of the cases above."""
-    for name in CASES:
-        for kernel, (body, kinds) in kernels_of(name).items():
-            for chip in chips:
-                yield name, kernel, chip, needs(body, kinds, chip)
+def rows(name: str, chips: tuple[tuple[int, int], ...]) -> Iterator[list[str]]:
+    """Kernel and needs of each kernel of a case; numbers in which chips differ side by side."""
+    kernels = {chip: kernels_of(name, chip) for chip in chips}
+    for kernel in kernels[chips[0]]:
+        found = [needs(*kernels[chip][kernel], chip) for chip in chips]
+        cells = (dict.fromkeys(map(str, column)) for column in zip(*found, strict=True))
+        same = [" / ".join(column) for column in cells]
+        same[1] = " / ".join(str(one.registers) for one in found)
+        yield [f"`{kernel}`", *same]
 
 
 def main() -> None:
     given = tuple((int(word) // 10, int(word) % 10) for word in sys.argv[1:]) or CHIPS
-    print("| case | kernel | chip | " + " | ".join(Needs._fields).replace("_", " ") + " |")
-    print("|---" * (3 + len(Needs._fields)) + "|")
-    for name, kernel, chip, found in table(given):
-        cells = " | ".join(map(str, found))
-        print(f"| {name} | `{kernel}` | sm_{chip[0]}{chip[1]} | {cells} |", flush=True)
+    print("| case | kernel | " + " | ".join(Needs._fields).replace("_", " ") + " |")
+    print("|---" * (2 + len(Needs._fields)) + "|")
+    for name in CASES:
+        for row in rows(name, given):
+            print(f"| {name} | " + " | ".join(row) + " |", flush=True)
 
 
 if __name__ == "__main__":

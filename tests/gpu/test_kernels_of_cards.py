@@ -10,17 +10,20 @@ from benchmarks.gpu_kernels import CASES, CHIPS, kernels_of, needs
 from mesokit.devices.cubins import made
 
 QUICK = ("3D SRD, thermostat", "3D sphere, thermostat")
-# Registers of a thread: with 64 a multiprocessor has 1024 threads, with 96 two thirds of these.
+# Registers of a thread: with 64 a multiprocessor has 1024 threads, with 104 half of these.
 MOST = {"sweep": 64, "collide_cell": 64}
-MOST_WITH_ANGULAR_MOMENTUM = {"sweep": 96, "collide_cell": 100}
+MOST_WITH_ANGULAR_MOMENTUM = {"sweep": 104, "collide_cell": 100}
 ROWS = [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.long]) for name in CASES]
 
 
 @pytest.mark.parametrize("name", ROWS)
 def test_what_all_threads_do_fits_in_few_registers(name) -> None:
     most = MOST_WITH_ANGULAR_MOMENTUM if "+a" in name else MOST
-    kernels = kernels_of(name)
-    found = {(kernel, chip): needs(*kernels[kernel], chip) for kernel in most for chip in CHIPS}
+    found = {
+        (kernel, chip): needs(*kernels_of(name, chip)[kernel], chip)
+        for kernel in most
+        for chip in CHIPS
+    }
     too_many = {key: one for key, one in found.items() if one.registers > most[key[0]]}
     assert too_many == {}
     assert {key: one for key, one in found.items() if one.spills or one.own_memory} == {}
@@ -28,7 +31,7 @@ def test_what_all_threads_do_fits_in_few_registers(name) -> None:
 
 @pytest.mark.parametrize("name", ROWS)
 def test_every_rounding_is_named(name) -> None:
-    texts = {k: made(*kernel, (9, 0)).ptx for k, kernel in kernels_of(name).items()}
+    texts = {k: made(*kernel, (9, 0)).ptx for k, kernel in kernels_of(name, (9, 0)).items()}
     assert "sweep" in texts
     unnamed = {k: re.findall(r"(?:add|sub|mul|div|sqrt)\.f64", text) for k, text in texts.items()}
     assert unnamed == {key: [] for key in texts}

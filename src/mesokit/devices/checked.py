@@ -91,7 +91,8 @@ class Checked(Emulated):
         if self._free.get(length):
             start = self._free[length].pop()
         else:
-            start, self._used = self._used, self._used + length + GAP
+            start = self._used
+            self._used += -(-(length + GAP) // GAP) * GAP
             if self._used > len(self._arena):
                 raise RunError(f"device = 'checked': {self._used} bytes do not fit")
         self._sizes[start] = length

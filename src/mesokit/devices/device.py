@@ -18,6 +18,10 @@ class Device(Protocol):
 
     name: str
 
+    @property
+    def chip(self) -> tuple[int, int] | None:
+        """Compute capability of a card, or of one that is emulated."""
+
     def allocate(self, size: int) -> int:
         """The address of so many bytes. Raises RunError if there are not so many."""
 

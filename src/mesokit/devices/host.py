@@ -39,6 +39,7 @@ class Host:
     """
 
     name = "host"
+    chip: Any = None  # none that kernels could be made for
 
     def __init__(self, seed: int | None = None) -> None:
         self._random = None if seed is None else np.random.default_rng(seed)

@@ -2,7 +2,8 @@
 
 What NVIDIA's compiler made of a kernel then runs on a processor, thread after thread: the bits of a
 card, but for what its assembler does. An instruction that is not known here, and one that leaves a
-rounding open, raises an error. No kernel may have barriers, shared memory or words for a warp.
+rounding open, raises an error. No kernel may have barriers or words for a warp, and shared memory
+only as places of single threads (see `devices.records`).
 """
 
 import re
@@ -24,6 +25,7 @@ COMPARISONS = {
 }  # fmt: skip
 WHOLE_PARTS = {"rmi": "floor", "rpi": "ceil", "rzi": "trunc", "rni": "rint"}
 SPECIAL = {"%tid.x": "tid", "%ntid.x": "ntid", "%ctaid.x": "ctaid", "%nctaid.x": "nctaid"}
+SHARED = r"\.shared\s+\.align\s+\d+\s+\.b8\s+([\w$]+)\[(\d+)\];"
 SPACES = ("param", "local", "const", "shared", "global")
 GLOBAL, GENERIC = "global", "generic"
 HEAD = r"""
@@ -91,6 +93,8 @@ class Translation:
         text = re.sub(
             r"^\s*\.(maxntid|minnctapersm|reqntid|noreturn|pragma).*", "", text, flags=re.M
         )
+        for name, size in re.findall(SHARED, text):
+            self._heads.append(f"static char p_{name}[{size}] __attribute__((aligned(16)));")
         found = re.finditer(
             r"\.(entry|func)\s*(\([^)]*\))?\s*([\w$]+)\s*\(([^)]*)\)\s*(;|\{)", text
         )
@@ -276,6 +280,25 @@ class Translation:
             f"if (most > before) *there = most; {found} }}"
         )
 
+    def _do_cp(self, words: list[str], to: list[str]) -> str:
+        if words[:2] == ["async", "bulk"]:  # groups of bulk additions, which are done at once here
+            assert words[2] in ("commit_group", "wait_group")
+            return ""
+        assert words[:3] == ["reduce", "async", "bulk"]
+        assert words[-2:] == ["add", "u64"]
+        size, source = int(to[2]), self._place(to[1], "shared", 8, READ)
+        places = (f"[{_farther(to[0][1:-1], k)}]" for k in range(0, size, 8))
+        adds = (
+            f"__atomic_fetch_add((uint64_t *){self._place(place, GLOBAL, 8, ADD)}, "
+            f"*(uint64_t *)({source} + {8 * k}), __ATOMIC_RELAXED);"
+            for k, place in enumerate(places)
+        )
+        return " ".join(adds)
+
+    def _do_fence(self, words: list[str], to: list[str]) -> str:
+        assert words == ["proxy", "async", "shared::cta"]
+        return ""
+
     def _do_mov(self, words: list[str], to: list[str]) -> str:
         if to[0].startswith("{"):
             low, high = (one.strip() for one in to[0].strip("{}").split(","))
@@ -427,5 +450,5 @@ def _end_of_block(text: str, start: int) -> int:
 
 def _pieces(body: str) -> list[str]:
     """Labels, braces and instructions; braces within an instruction enclose operands."""
-    pattern = r"[\w$]+:(?!:)|(?:@!?%p\d+\s+)?[.\w]+(?:\s[^;{}]*\{[^}]*\}[^;]*|\s[^;{}]*)?;|[{}]"
+    pattern = r"[\w$]+:(?!:)|(?:@!?%p\d+\s+)?[.\w:]+(?:\s[^;{}]*\{[^}]*\}[^;]*|\s[^;{}]*)?;|[{}]"
     return [found[0] for found in re.finditer(pattern, body)]

@@ -1,38 +1,43 @@
 """What a fluid takes on common cards: memory, and a prediction of the time of its steps.
 
-A particle-step takes the longer of two: its double precision arithmetic, or the traffic of memory.
-The latter is that of positions and velocities, and a time for each word that a particle adds to the
-sums of its cell. Both are known from kernels measured on an H100 and an H200 (docs/inside/gpu.md);
-those of other cards follow from their bandwidths, and were not measured.
+A particle-step takes the longer of two: its double precision arithmetic, or its traffic. That is a
+copy of positions and velocities, the additions to the sums of its cell, and its share of the work
+on cells. Times of all three were measured with prototypes of the kernels on an H100 and an H200
+(docs/inside/gpu.md); those of other cards follow from their bandwidths, and were not measured.
 """
 
 from typing import NamedTuple
 
 from mesokit.case.amounts import duration_text, size_text
 from mesokit.case.case import Case
+from mesokit.devices.records import AtOnce, adding
 from mesokit.loops.layout import record_length, sums_length
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.seam.method import Row
 
 
 class Card(NamedTuple):
-    """A card: bytes of memory, bytes copied in a second, double precision operations in a second,
-    seconds for a word that is added to sums, and whether this was measured."""
+    """A card: compute capability, bytes of memory, bytes copied in a second, double precision
+    operations in a second, seconds for a word that is added to sums, for four words added at once,
+    and of the work on a cell; and whether the last three were measured."""
 
     name: str
+    chip: tuple[int, int]
     memory: float
     bandwidth: float
     arithmetic: float
     word: float
+    four_words: float
+    cell: float
     measured: bool
 
 
 CARDS = (
-    Card("A100 80 GB", 80e9, 1.7e12, 4.8e12, 16e-12, False),
-    Card("H100 80 GB", 80e9, 2.9e12, 1.6e13, 12.4e-12, True),
-    Card("H200", 141e9, 4.0e12, 1.6e13, 11e-12, True),
-    Card("RTX 4090", 24e9, 0.9e12, 6.4e11, 14e-12, False),
-    Card("RTX 5090", 32e9, 1.6e12, 8.2e11, 11e-12, False),
+    Card("A100 80 GB", (8, 0), 80e9, 1.7e12, 4.8e12, 16e-12, 0.0, 150e-12, False),
+    Card("H100 80 GB", (9, 0), 80e9, 2.9e12, 1.6e13, 12.4e-12, 16e-12, 110e-12, True),
+    Card("H200", (9, 0), 141e9, 4.0e12, 1.6e13, 11e-12, 14e-12, 100e-12, True),
+    Card("RTX 4090", (8, 9), 24e9, 0.9e12, 6.4e11, 14e-12, 0.0, 200e-12, False),
+    Card("RTX 5090", (12, 0), 32e9, 1.6e12, 8.2e11, 12e-12, 16e-12, 150e-12, False),
 )
 IN_2D = 0.6  # times as many operations as in 3D
 LAUNCH = 10e-6  # seconds from one launch of a kernel to the next, at least
@@ -51,11 +56,15 @@ def memory_of(numbers: Numbers) -> int:
 
 def seconds_of_step(numbers: Numbers, card: Card) -> float:
     """Seconds of a step on a card, as predicted."""
-    words, d = len(numbers.scales) + 1, numbers.dimension
-    traffic = words * card.word + 4 * d * REAL / card.bandwidth
+    d, length = numbers.dimension, sums_length(len(numbers.scales))
+    additions = (len(numbers.scales) + 1) * card.word
+    if isinstance(adding(card.chip, length), AtOnce):
+        additions = length // 4 * card.four_words
+    copies = 4 * d * REAL / card.bandwidth
+    traffic = copies + additions + card.cell * numbers.number_of_cells / numbers.n
     operations = numbers.case.fluid.collision.operations
     arithmetic = operations * (IN_2D if d == 2 else 1.0) / card.arithmetic
-    launches = 4 if numbers.solids is not None else 2
+    launches = 6 if numbers.solids is not None else 3
     return max(numbers.n * max(traffic, arithmetic), launches * LAUNCH)
 
 
@@ -67,7 +76,7 @@ def rows(case: Case) -> list[Row]:
     for card in CARDS:
         name, step = f"on one {card.name}", seconds_of_step(numbers, card)
         rate = f"{numbers.n / step:.2g} particle-steps/s"
-        basis = "measured kernels" if card.measured else "bandwidths, not measured"
+        basis = "prototypes measured" if card.measured else "bandwidths, not measured"
         note = f"{rate}, predicted from {basis}; no walls, samples or files"
         if needed > card.memory:
             found.append((name, "too large", f"it has {size_text(card.memory)}"))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.devices.device import BLOCK, Device
+from mesokit.devices.records import WordByWord, adding
 from mesokit.loops.layout import record_length, sums_length
 from mesokit.method.mpcd.engine.beads.interactions import shared_fault
 from mesokit.method.mpcd.engine.cell_gradient import NeighbourSums
@@ -57,7 +58,7 @@ class DeviceMemory:
         names = "rule", "thermostat", "field", "solid", "energy", "molecule"
         nothing: dict[str, Any] = dict.fromkeys((*names, "coefficients", "terms", "scales"), ())
         physics = self.physics_there._replace(**nothing)
-        return physics, self.fluid._replace(neighbour_sums=(), tensor=())
+        return physics, self.fluid._replace(adds=WordByWord(), neighbour_sums=(), tensor=())
 
     @property
     def box(self) -> tuple:
@@ -101,6 +102,7 @@ class DeviceMemory:
             kinds=self._kinds(),
             coefficients=self.room(every * record_length(self.numbers.coefficient_count) * REAL),
             sums=self.room(every * sums_length(len(self.physics.terms)) * REAL),
+            adds=adding(self.device.chip, sums_length(len(self.physics.terms))),
             neighbour_sums=self._neighbour_sums(),
             impulse=self.room(self.surfaces * self.of_surface * REAL),
             listed=self.room(n * WHOLE if among_solids else 0),

@@ -24,6 +24,7 @@ class DeviceFluid(NamedTuple):
     kinds: Any  # Kinds, or () where all masses are the same
     coefficients: int  # records of cells: what their particles need to collide, float64
     sums: int  # records of cells: fixed-point sums over their particles, int64
+    adds: Any  # how particles add to the records of sums (see `devices.records`)
     neighbour_sums: tuple  # one of these sums in all cells, if the rule needs its gradient, or ()
     impulse: int  # momentum and angular momentum that surfaces took, int64
     listed: int  # particles whose flight may meet a surface, int32

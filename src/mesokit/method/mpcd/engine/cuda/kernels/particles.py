@@ -8,6 +8,7 @@ import numpy as np
 
 from mesokit.case.box import slide
 from mesokit.devices.device import BLOCK
+from mesokit.devices.records import add_record
 from mesokit.geometry.protocol import touches
 from mesokit.geometry.solids.bodies import Bodies, cube_of
 from mesokit.loops.layout import beads_of, record_length, sums_length
@@ -113,9 +114,16 @@ def bring(i, physics, now, fluid, r, v):
     m = mass_of_number(physics, fluid.kinds, number)
     kept, terms, counted = brought(physics, now, number, m, r, v)
     start = np.int64(cell_index(r, now.grid)) * sums_length(len(physics.terms))
-    add_words(fluid.sums, start, (np.int64(optional(counted, 1)),) + terms)
+    add_record(fluid.adds, fluid.sums, start, padded((np.int64(optional(counted, 1)),) + terms))
     to_rows(fluid.r, i, r)
     return kept
+
+
+@by_type
+def padded(values):
+    """A record as long as it is in memory: with zeros, which change no sum."""
+    more = (0,) * (sums_length.py_func(len(values) - 1) - len(values))
+    return lambda values: values + more
 
 
 @by_type
