@@ -3,8 +3,8 @@
     python -m benchmarks.gpu_kernels [chip ...]        such as 80 90 120
 
 A table in Markdown: instructions of the text (PTX), registers of each chip, bytes of spills and of
-the thread's own memory, double precision operations, and accesses to global memory; an addition of a
-whole record is one.
+the thread's own memory, double precision operations, and accesses to global memory. An addition of
+a whole record is one access.
 """
 
 from __future__ import annotations

@@ -61,7 +61,7 @@ def seconds_of_step(numbers: Numbers, card: Card) -> float:
     if isinstance(adding(card.chip, length), AtOnce):
         additions = length // 4 * card.four_words
     copies = 4 * d * REAL / card.bandwidth
-    traffic = copies + additions + card.cell * numbers.number_of_cells / numbers.n
+    traffic = copies + additions + card.cell * numbers.number_of_cells / max(numbers.n, 1)
     operations = numbers.case.fluid.collision.operations
     arithmetic = operations * (IN_2D if d == 2 else 1.0) / card.arithmetic
     launches = 6 if numbers.solids is not None else 3
