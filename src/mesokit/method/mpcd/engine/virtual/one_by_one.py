@@ -52,9 +52,9 @@ def fill_one_by_one(worker, now, physics, fluid, walls):
     for entry in range(start + begin, start + end):
         key = virtual.keys[entry]
         for j in range(poisson_number(virtual.density, counter, VIRTUAL_NUMBER, key)):
-            found = drawn_place(virtual, entry, physics, now.grid, counter, key, j)
-            at = Candidate(worker.thread, count, FIRST_VIRTUAL + key * MOST + j)
-            count += note_particle(virtual, at, physics, found, fluid.particles.rows)
+            drawn = words(counter, VIRTUAL_POSITION, key, j)
+            at = Candidate(worker.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
+            count += place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows)
     draw_velocities(virtual, count, worker, now, physics, fluid)
 
 
@@ -69,11 +69,11 @@ class Drawn(NamedTuple):
     mass: float
 
 
-@seldom
-def drawn_place(virtual, entry, physics, grid, counter, key, n):
-    """The nth place that is drawn in a cut cell; tables are arrays or addresses."""
+@scalar
+def drawn_place(virtual, entry, physics, grid, drawn):
+    """The place in a cut cell that follows from random words; tables are arrays or addresses."""
     solid, zero = physics.solid, physics.zero
-    a, b, c, e = words(counter, VIRTUAL_POSITION, key, n)
+    a, b, c, e = drawn
     corner = numbers_in(virtual.corners, entry, len(zero), 0, zero)
     within = first((unit_open(a), unit_open(b), unit_open(c)), zero)
     r = _in_cell(corner, grid.origin, within)
@@ -111,17 +111,6 @@ def number_missing(virtual, counter, key, present):
 
 
 @scalar
-def some_place(virtual, entry, physics, grid, counter, key, j):
-    """A place in the solid part of a cut cell for the jth that is missing, by several tries."""
-    found = drawn_place(virtual, entry, physics, grid, counter, key, j * TRIES)
-    for attempt in range(1, TRIES):
-        if found.in_solid:
-            break
-        found = drawn_place(virtual, entry, physics, grid, counter, key, j * TRIES + attempt)
-    return found
-
-
-@scalar
 def take_particle(physics, impulse, term, r, momentum):
     """Add the momentum of a virtual particle at r, which is part of the wall in which it lies."""
     x = homed(physics.solid, r)
@@ -129,16 +118,19 @@ def take_particle(physics, impulse, term, r, momentum):
 
 
 class Candidate(NamedTuple):
-    """A possible virtual particle: thread, number of those held, and particle number."""
+    """A possible virtual particle: thread, number of those held, cut cell and particle number."""
 
     thread: int
     held: int
+    entry: int
     number: int
 
 
-@scalar
-def note_particle(virtual, at, physics, found, rows):
-    """Keep a virtual particle, with the mean velocity of the gas; 1, or 0 if it is in no solid."""
+@seldom
+def place_one(virtual, at, physics, grid, drawn, rows):
+    """Note a virtual particle at a place drawn in a cell, with the mean velocity of the gas there,
+    if that is solid; 1 if it is, else 0."""
+    found = drawn_place(virtual, at.entry, physics, grid, drawn)
     if not found.in_solid or at.held >= virtual.term.shape[1]:
         return 0
     strip, lane = virtual.data[at.thread][strip_at(at.held // LANES, rows)], at.held % LANES
@@ -216,8 +208,11 @@ def top_up_walls(worker, now, physics, fluid, walls):
         key = virtual.keys[entry]
         present = number_in_cell(physics, fluid.cells.sums, virtual.cells[entry])
         for j in range(number_missing(virtual, counter, key, present)):
-            found = some_place(virtual, entry, physics, now.grid, counter, key, j)
-            at = Candidate(worker.thread, count, FIRST_VIRTUAL + key * MOST + j)
-            count += note_particle(virtual, at, physics, found, fluid.particles.rows)
+            at = Candidate(worker.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
+            for attempt in range(TRIES):
+                drawn = words(counter, VIRTUAL_POSITION, key, j * TRIES + attempt)
+                if place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows) == 1:
+                    count += 1
+                    break
     draw_velocities(virtual, count, worker, now, physics, fluid)
     barrier(worker)

@@ -14,16 +14,16 @@ from mesokit.method.mpcd.engine.cpu.strips.terms import brought, number_in_cell
 from mesokit.method.mpcd.engine.cuda.kernels.virtual import cut_cell
 from mesokit.method.mpcd.engine.virtual.of_cell import velocity_of_gas
 from mesokit.method.mpcd.engine.virtual.one_by_one import (
+    TRIES,
     drawn_place,
     number_missing,
-    some_place,
     take_particle,
 )
 from mesokit.method.mpcd.engine.virtual.particles import MOST
-from mesokit.scalar.jit import optional, scalar
+from mesokit.scalar.jit import optional, scalar, seldom
 from mesokit.scalar.pointer import add_words, put_reals, real, reals, take_number, whole, word
 from mesokit.scalar.poisson import poisson_number
-from mesokit.scalar.random import FIRST_VIRTUAL, VIRTUAL_NUMBER
+from mesokit.scalar.random import FIRST_VIRTUAL, VIRTUAL_NUMBER, VIRTUAL_POSITION, words
 from mesokit.scalar.vector import added, scaled
 
 
@@ -35,9 +35,8 @@ def fill_cell_one_by_one(i, physics, now, fluid, walls):
         key = word(walls.keys, entry)
         # As many places as a cell full of fluid has particles; those in solid are kept.
         for j in range(poisson_number(walls.density, now.counter, VIRTUAL_NUMBER, key)):
-            found = drawn_place(walls, entry, physics, now.grid, now.counter, key, j)
-            if found.in_solid:
-                bring_virtual(FIRST_VIRTUAL + key * MOST + j, found, physics, now, fluid, walls)
+            number = FIRST_VIRTUAL + key * MOST + j
+            bring_virtual((entry, key, number), j, physics, now, fluid, walls)
 
 
 @scalar
@@ -49,14 +48,25 @@ def top_up_cell(i, physics, now, fluid, walls):
         present = number_in_cell(physics, fluid.sums, word(walls.cells, entry))
         # Particles of the fluid were counted before. Those of this loop lie in this cell.
         for j in range(number_missing(walls, now.counter, key, present)):
-            found = some_place(walls, entry, physics, now.grid, now.counter, key, j)
-            if found.in_solid:
-                bring_virtual(FIRST_VIRTUAL + key * MOST + j, found, physics, now, fluid, walls)
+            number, missing, attempt = FIRST_VIRTUAL + key * MOST + j, True, 0
+            while missing and attempt < TRIES:
+                draw = j * TRIES + attempt
+                missing = not bring_virtual((entry, key, number), draw, physics, now, fluid, walls)
+                attempt += 1
 
 
-@scalar
-def bring_virtual(number, found, physics, now, fluid, walls):
-    """Add a virtual particle to the sums of its cell; what it has is taken from the wall."""
+@seldom
+def bring_virtual(particle, draw, physics, now, fluid, walls):
+    """Add a virtual particle to the sums of its cell, if a place drawn there is solid; whether so.
+
+    `particle` has the entry and the key of the cell, and its own number. What it has before the
+    collision is taken from the wall.
+    """
+    entry, key, number = particle
+    drawn = words(now.counter, VIRTUAL_POSITION, key, draw)
+    found = drawn_place(walls, entry, physics, now.grid, drawn)
+    if not found.in_solid:
+        return False
     r, term, m = found.r, found.term, found.mass
     v = added(found.u, velocity_of_gas(physics, m, now.counter, number))
     kept, terms, counted = brought(physics, now, number, m, r, v)
@@ -68,6 +78,7 @@ def bring_virtual(number, found, physics, now, fluid, walls):
         if place < walls.room:
             record = (m, float(term)) + kept + r
             put_reals(walls.records, place * record_of_particle(physics.zero), record)
+    return True
 
 
 @scalar
