@@ -10,7 +10,7 @@ endif
 READY := .venv/ready
 
 .PHONY: help demo test test-long test-all durations quick lint check site tutorials sketches films bench \
-  validate parts clean
+  test-gpu bench-gpu validate parts clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
 	@echo "make test      run the tests but the long ones: some minutes"
@@ -24,6 +24,8 @@ help:
 	@echo "make sketches  draw the sketches of the guide"
 	@echo "make films     make the films of README"
 	@echo "make bench     measure the speed, side by side with LAMMPS"
+	@echo "make test-gpu  run the tests that need a card; DEVICE=emulated rehearses them without one"
+	@echo "make bench-gpu measure the speed of a card, kernel by kernel"
 	@echo "make validate  write docs/validation: measured against theory, law by law"
 	@echo "make parts     compile the parts that a wheel brings, for this Python and system"
 	@echo "make clean     remove what these made"
@@ -87,6 +89,14 @@ films: $(READY)
 
 bench: $(READY)
 	@$(BIN)/python -m benchmarks
+
+# The first card; DEVICE=cuda:1 is the second
+DEVICE ?= cuda
+test-gpu: $(READY)
+	@MESOKIT_TEST_DEVICE=$(DEVICE) $(BIN)/python -m pytest -rs tests/on_card
+
+bench-gpu: $(READY)
+	@$(BIN)/python -m benchmarks.gpu --device $(DEVICE)
 
 validate: $(READY)
 	@$(BIN)/python validation/all.py

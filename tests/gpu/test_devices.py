@@ -233,8 +233,8 @@ def test_a_tape_replays_to_the_same_bits(tmp_path) -> None:
     tape = Tape(tmp_path / "work.tape")
     assert tape.about == {"what": "work"}
     assert tape.chip == (9, 0)
-    assert tape.play(Emulated(seed=9)) == []
-    assert tape.play(Cuda(driver=FakeDriver())) == []
+    assert tape.play(Emulated(seed=9)).reads == []
+    assert tape.play(Cuda(driver=FakeDriver())).reads == []
     np.testing.assert_array_equal(found, expected_work()[0])
 
 
@@ -246,7 +246,7 @@ def test_other_bits_are_seen_by_a_tape(tmp_path) -> None:
     recorded = Recorded(Emulated())
     run_work(recorded)
     recorded.save(tmp_path / "work.tape")
-    assert len(Tape(tmp_path / "work.tape").play(Careless())) == 1
+    assert len(Tape(tmp_path / "work.tape").play(Careless()).reads) == 1
     (tmp_path / "none.tape").write_text("no tape")
     with pytest.raises(ValueError, match=r"none\.tape: no tape"):
         Tape(tmp_path / "none.tape")

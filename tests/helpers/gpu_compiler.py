@@ -6,21 +6,11 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from numba import typeof
-from numba.cuda import compiler, dispatcher
+
+from mesokit.devices.compile import compiled
 
 ARCHITECTURE = (9, 0)
 Call = tuple[Callable, tuple[Any, ...]]
-
-
-class Device:
-    """What the compiler asks of a device."""
-
-    compute_capability = ARCHITECTURE
-
-
-# The compiler asks the device what it is; there is no public way to tell it.
-for module in (dispatcher, compiler):
-    module.get_current_device = Device
 
 
 class Compiled(NamedTuple):
@@ -38,13 +28,8 @@ def compile_for_gpu(calls: Sequence[Call], optimised: bool = False) -> Compiled:
     answers = ", ".join(f"f{k}(*given[{k}])" for k in range(len(calls)))
     space: dict[str, Any] = {f"f{k}": function for k, (function, _) in enumerate(calls)}
     exec(f"def called(given): return ({answers},)", space)
-    result = compiler.compile_cuda(
-        space["called"],
-        None,
-        (typeof(tuple(arguments for _, arguments in calls)),),
-        # without contraction a * b + c keeps its two roundings, as on the CPU
-        nvvm_options={"opt": 3 if optimised else 0, "fma": 0},
-        cc=ARCHITECTURE,
-    )
+    given = typeof(tuple(arguments for _, arguments in calls))
+    level = 3 if optimised else 0
+    result = compiled(space["called"], None, (given,), ARCHITECTURE, level)
     (text,) = result.library.get_asm_strs(cc=ARCHITECTURE)
     return Compiled(result.library.get_llvm_str(), text)

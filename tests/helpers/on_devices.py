@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from mesokit import SRD, Demix, MaxwellBoltzmann, Rescale, Species, SteadyShear, Uniform
 from mesokit.case.shear import HISTORIES
+from mesokit.devices.compile import Chip
+from mesokit.devices.emulated import Emulated
+from mesokit.devices.recorded import Recorded
 from mesokit.method.mpcd.collision import RULES
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.engine.cuda.engine import CUDA
@@ -47,6 +51,19 @@ def pair(device: Any, measures: Sequence[str] = (), **parts: Any) -> Pair:
     for engine in made:
         start(engine)
     return made
+
+
+def record(file: Path, chip: Chip, **parts: Any) -> None:
+    """Write the tape of a small fluid, which expects its rows in the order of particles."""
+    recorded = Recorded(Emulated(chip))
+    engine = CUDA(make_case(**parts), recorded)
+    start(engine)
+    engine.advance(STEPS)
+    rows = engine.memory.fluid
+    reals = [(row, "float64") for row in (*rows.r, *rows.v)]
+    wholes = [(row, "int32") for row in (rows.ident, *rows.image)]
+    recorded.expect(engine.n, [*wholes, *reals])
+    recorded.save(file, steps=STEPS)
 
 
 def readings(fluid: Any) -> list[Any]:

@@ -59,18 +59,22 @@ def kernel_of(body: Callable) -> Callable:
     return made
 
 
+def compiled(function: Callable, gives: Any, kinds: tuple[Any, ...], chip: Chip, level: int) -> Any:
+    """A function of arguments of these numba types, as numba-cuda leaves it; `gives` is its type.
+
+    Without contraction a * b + c keeps its two roundings, as on the processor.
+    """
+    compiler, _ = _numba_cuda()
+    options = {"opt": level, "fma": 0}
+    return compiler.compile_cuda(function, gives, kinds, nvvm_options=options, cc=chip)
+
+
 def text_of(body: Callable, kinds: tuple[Any, ...], chip: Chip) -> str:
     """PTX of a body for arguments of these numba types: products and sums keep their roundings."""
     from numba import types
 
     compiler, nvvm = _numba_cuda()
-    made = compiler.compile_cuda(
-        kernel_of(body),
-        types.void,
-        (types.int64, *kinds),
-        nvvm_options={"opt": 3, "fma": 0},
-        cc=chip,
-    )
+    made = compiled(kernel_of(body), types.void, (types.int64, *kinds), chip, level=3)
     function = made.library.get_function(made.fndesc.llvm_func_name)
     compiler.kernel_fixup(function, False)
     nvvm.set_launch_bounds(function, BLOCK)

@@ -20,7 +20,10 @@ from mesokit.devices.compile import Chip, machine_of, text_of
 from mesokit.kernels.made_of import describe_type
 from mesokit.kernels.store import folder
 
-COMPILERS = "numba", "llvmlite", "numba-cuda", "nvidia-nvvm", "nvidia-nvjitlink"
+COMPILERS = (
+    "numba", "llvmlite", "numba-cuda", "nvidia-nvvm", "nvidia-nvjitlink",
+    "nvidia-cuda-nvcc-cu12", "nvidia-nvjitlink-cu12",
+)  # fmt: skip
 TEXT, CUBIN, SAID = "kernel.ptx", "kernel.cubin", "assembler.txt"
 
 

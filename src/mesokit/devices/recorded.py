@@ -1,16 +1,16 @@
 """Tapes: all that a device was asked to do, kept to be done again by another one.
 
 A tape is made on a machine without a card and played on one that has it. There it needs numpy and
-the driver's bindings alone: no compiler, and no fluid. It ends with a hash of what must come out.
+the driver's bindings alone: no compiler, and no fluid. It holds hashes of what must come out.
 """
 
 import hashlib
 import io
 import json
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,6 +73,15 @@ class Recorded:
         self.behind.read(self._real(address), values)
         self._note("read", address=address, size=values.nbytes, hash=_hash(values))
 
+    def expect(self, length: int, rows: Sequence[tuple[int, str]]) -> None:
+        """Keep the hash of rows of so many numbers: their addresses, and kinds as numpy names them.
+
+        Numbers are taken in the order of those in the first row, in which none is twice: where they
+        lie may depend on the order of threads.
+        """
+        found = _hash_in_order(self.behind, self._real, length, rows)
+        self._note("expect", length=length, rows=list(rows), hash=found)
+
     def clear(self, address: int, size: int) -> None:
         """Set so many bytes to 0."""
         self.behind.clear(self._real(address), size)
@@ -118,12 +127,32 @@ def _hash(values: NDArray[Any]) -> str:
     return hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()
 
 
+def _hash_in_order(
+    device: Any, real: Callable[[int], int], length: int, rows: Sequence[tuple[int, str]]
+) -> str:
+    found = [np.empty(length, kind) for _, kind in rows]
+    for (address, _), values in zip(rows, found, strict=True):
+        device.read(real(address), values)
+    order = np.argsort(found[0])
+    return _hash(np.concatenate([values[order].view(np.uint8) for values in found]))
+
+
 def _with_addresses(words: NDArray[np.uint64], real: Callable[[int], int]) -> NDArray[np.uint64]:
     """Words with the addresses of a device in the place of those on a tape."""
     words = words.copy()
     for k in np.flatnonzero((words >> np.uint64(60)) == 1):
         words[k] = real(int(words[k]))
     return words
+
+
+class Differences(NamedTuple):
+    """Places on a tape where other bits came out, among reads and among what was expected.
+
+    What is read may depend on the order of threads, such as rows of particles after a sort.
+    """
+
+    reads: list[int]
+    expected: list[int]
 
 
 class Tape:
@@ -147,14 +176,14 @@ class Tape:
             raise ValueError(f"{file}: no tape ({error})") from None
         self.about, self.chip, self._events = table["about"], tuple(table["chip"]), table["events"]
 
-    def play(self, device: Any) -> list[int]:
-        """Do all of it on a device; the places of reads that gave other bits than on the tape.
+    def play(self, device: Any) -> Differences:
+        """Do all of it on a device; where it gave other bits than on the tape.
 
         The device loads kernels of the tape by `loaded(ptx, cubin)`.
         """
         kernels = [device.loaded(*kernel) for kernel in self._kernels]
         blocks: list[int] = []
-        differ = []
+        differ = Differences([], [])
 
         def real(address: int) -> int:
             number, byte = (address - TAG) >> BLOCK_BITS, address & ((1 << BLOCK_BITS) - 1)
@@ -176,10 +205,13 @@ class Tape:
             elif do == "launch":
                 words = self._arrays[event["array"]].view(np.uint64)
                 device.launch(kernels[event["kernel"]], _with_addresses(words, real))
+            elif do == "expect":
+                if _hash_in_order(device, real, event["length"], event["rows"]) != event["hash"]:
+                    differ.expected.append(place)
             else:
                 found = np.empty(event["size"], np.uint8)
                 device.read(real(event["address"]), found)
                 if _hash(found) != event["hash"]:
-                    differ.append(place)
+                    differ.reads.append(place)
         device.wait()
         return differ
