@@ -34,7 +34,13 @@ def outdated(noted, column, threads, slip, skin):
     farthest = 0.0
     for t in range(threads):
         farthest = max(farthest, noted[t, column])
-    return 2.0 * math.sqrt(farthest) + slip > skin
+    return too_far(farthest, slip, skin)
+
+
+@scalar
+def too_far(square, slip, skin):
+    """Whether lists may miss a pair after a longest displacement of this square."""
+    return 2.0 * math.sqrt(square) + slip > skin
 
 
 @scalar

@@ -35,7 +35,7 @@ def move_solutes(worker, now, physics, fluid, beads):
     """Do the stages that the flags have: the pending collision, the flight, the cells."""
     together = threads_for(worker, beads)
     first, last = beads_of_thread(worker, together, beads)
-    measured, halo = now.flags & MEASURE_STRESS, beads.halo
+    measured, halo, tensor = now.flags & MEASURE_STRESS, beads.halo, beads.tensor
     box = box_before(now, physics)
     if now.flags & COLLIDE:  # v: the collision at t
         # Beads take the coefficients of their cells, like particles of the fluid. Each bead belongs
@@ -45,7 +45,9 @@ def move_solutes(worker, now, physics, fluid, beads):
             collide_bead(beads, i, physics, box, now.old, fluid.cells.coefficients)
         if measured and not now.flags & STREAM:
             for n in range(first, last):
-                add_bead_flux(beads, n, physics, now.box, now.old.shift, 1)
+                add_bead_flux(
+                    tensor[1, n // state.GROUP], beads, n, physics, now.box, now.old.shift
+                )
     if now.flags & STREAM:  # r, v: t -> t + dt; cells at t + dt
         assign_beads(worker, now, physics, box, fluid, beads)  # ranks: owners and copies
         together = threads_for(worker, beads)
@@ -57,7 +59,9 @@ def move_solutes(worker, now, physics, fluid, beads):
         verlet(moving, now, physics, beads.potentials.substeps)
         if measured:
             for n in range(first, last):
-                add_bead_flux(beads, n, physics, now.box, now.grid.shift, 0)
+                add_bead_flux(
+                    tensor[0, n // state.GROUP], beads, n, physics, now.box, now.grid.shift
+                )
         for n in range(first, last):
             bin_bead(beads, state.bead_of(halo, state.OWN, n), physics, now)
 
@@ -113,13 +117,10 @@ def bin_bead(beads, i, physics, now):
 
 
 @scalar
-def add_bead_flux(beads, n, physics, box, shift, when):
-    """Add the part of the nth bead in the stress, with its velocity in the image of its cell.
-
-    `when` is 0 before a collision, 1 after it.
-    """
+def add_bead_flux(tensor, beads, n, physics, box, shift):
+    """Add the part of the nth bead in the stress, with its velocity in the image of its cell."""
     i = state.bead_of(beads.halo, state.OWN, n)
     r, v, _ = state.load_folded(beads, i, box, scaled(0.0, shift))
     place, u, _ = fold(box, r, v, shift)
     carried = flux(state.mass_of(beads, i), peculiar(box, r, v), u, added(place, shift))
-    add_terms(state.tensor_row(beads, when, n, physics.zero), physics.stress_scale, carried)
+    add_terms(tensor, physics.stress_scale, carried)

@@ -21,7 +21,8 @@ from mesokit.scalar.pointer import raise_to
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 STEP, FIRST, SECOND = 0, 1, 2  # what is noted, of each thread: its step, or 0, and two beads
-LATEST, BEAD_BITS = 1 << 62, 31  # of what all threads share: the first comes to be the largest
+SHARED = 2  # numbers that tell all threads the same
+LATEST, BEAD_BITS = 1 << 62, 31  # of these: the first comes to be the largest
 
 
 class BeadForce(NamedTuple):

@@ -65,7 +65,7 @@ def _(moving, step, box, physics, time):
     if moving.measured:
         for n in range(moving.first, moving.last):
             i = state.bead_of(beads.halo, state.OWN, n)
-            virial = Virial(time, state.tensor_row(beads, 2, n, zero), physics.stress_scale)
+            virial = Virial(time, beads.tensor[2, n // state.GROUP], physics.stress_scale)
             each_on_bead(virial, (), beads, i, state.load_place(beads, i, zero), box)
     scale, faults = momentum_scale(physics), beads.faults[worker.thread]
     force = BeadForce(time, moving.impulse, scale, step, faults)

@@ -19,7 +19,8 @@ from mesokit.method.mpcd.engine.beads.state import AROUND, OWN, bead_of, number_
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.scalar.elementary import rint
 from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import by_type, seldom
+from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.pointer import element
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 CROWDED = -1  # the length of a list that did not fit
@@ -112,18 +113,11 @@ def _refresh(worker, lists, halo, box, places, zero):
     (lists,) = lists
     every, noted, farthest = len(lists.cell), lists.noted[worker.thread], 0.0
     around = share(number_of(halo, every, AROUND), worker.thread, worker.threads)
-    slip = offset_of_images(box) - noted[OFFSET]
-    slip -= rint(slip * box.inverse[0]) * box.size[0]
-    # Displacements since the lists were made, relative to the surroundings. Under shear images
-    # slide meanwhile: of a bead that was `boxes` images up along y, as many slips are taken off.
+    slip = slip_since(box, noted[OFFSET])
     for n in range(around[0], around[1]):
         i = bead_of(halo, AROUND, n)
-        at = np.uint64(i * len(zero))
-        before = load_values(lists.made_at, at, zero)
-        moved = added_scaled(load_values(places, at, zero), -1.0, before)
-        moved = with_item(moved, 0, moved[0] - lists.boxes[i] * slip)
-        square = dot(moved, moved)
-        farthest = max(farthest, square if square >= 0.0 else np.inf)  # lost beads too
+        place = load_values(places, np.uint64(i * len(zero)), zero)
+        farthest = max(farthest, square_moved(lists, i, place, slip))
     noted[MOVED] = farthest
     barrier(worker)
     # All threads come to the same answer, so that all make lists or none.
@@ -139,6 +133,27 @@ def _refresh(worker, lists, halo, box, places, zero):
         for n in range(first, last):
             make_list(lists, box, places, bead_of(halo, OWN, n), zero)
         barrier(worker)
+
+
+@scalar
+def slip_since(box, offset):
+    """How far the images above have slid since they had this offset."""
+    slip = offset_of_images(box) - offset
+    return slip - rint(slip * box.inverse[0]) * box.size[0]
+
+
+@scalar
+def square_moved(lists, i, place, slip):
+    """Square of the displacement of bead i since the lists were made, relative to what is around.
+
+    Under shear images slide meanwhile: of a bead that was `boxes` images up along y, as many slips
+    are taken off. It is infinite for a bead that is lost.
+    """
+    before = load_values(lists.made_at, np.uint64(i * len(place)), place)
+    moved = added_scaled(place, -1.0, before)
+    moved = with_item(moved, 0, moved[0] - element(lists.boxes, i) * slip)
+    square = dot(moved, moved)
+    return square if square >= 0.0 else np.inf
 
 
 @seldom

@@ -10,7 +10,7 @@ from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.jit import by_type, scalar
-from mesokit.scalar.pointer import WORD, element, is_address
+from mesokit.scalar.pointer import element
 
 GROUP = 64  # beads whose part in the stress is added up by itself
 
@@ -114,20 +114,6 @@ def inverse_mass_of(beads, i):
     if field_of(beads, "mass") == types.float64:
         return lambda beads, i: beads.potentials.inverse_mass
     return lambda beads, i: 1.0 / element(beads.mass, i)
-
-
-@by_type
-def tensor_row(beads, when, n, zero):
-    """The part in the stress of the group of bead n, before (0) or after (1) a collision or by
-    forces (2)."""
-    if is_address(field_of(beads, "tensor")):
-        return _tensor_row_at
-    return lambda beads, when, n, zero: beads.tensor[when, n // GROUP]
-
-
-def _tensor_row_at(beads, when, n, zero):
-    groups, d = (beads.number + GROUP - 1) // GROUP, len(zero)
-    return beads.tensor + (when * groups + n // GROUP) * 2 * d * d * WORD
 
 
 @scalar

@@ -37,9 +37,15 @@ def drift_in(moving, now, physics, substeps, n):
 @scalar
 def kick_after(moving, now, physics, substeps, n):
     """The kick after the nth flight, or that before the first one."""
-    step, time = now.counter.step, physics.timestep / substeps
-    box = at_time(now.box, (step - 1) * physics.timestep + n * time)
-    kick(moving, step, box, physics, time if 0 < n < substeps else 0.5 * time)
+    time, box = physics.timestep / substeps, box_after(now, physics, substeps, n)
+    kick(moving, now.counter.step, box, physics, time if 0 < n < substeps else 0.5 * time)
+
+
+@scalar
+def box_after(now, physics, substeps, n):
+    """The box after n of the sub-steps."""
+    time = physics.timestep / substeps
+    return at_time(now.box, (now.counter.step - 1) * physics.timestep + n * time)
 
 
 @generic

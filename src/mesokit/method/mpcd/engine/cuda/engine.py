@@ -44,8 +44,13 @@ class CUDA(Running):
 
     def _steps(self, steps: int, what: int) -> None:
         began = perf_counter()
+        beads = self.memory.beads
+        if beads is not None:
+            beads.send(what)
         self._stages.run(self._course(steps, what))
         self.memory.step += steps
+        if beads is not None:
+            beads.fetch(what)
         self.device.wait()
         self._seconds["steps"] += perf_counter() - began
 

@@ -33,11 +33,12 @@ class StepKernel:
         words = words_of(0, fluid)[1:]
         self._words[self._now.stop : self._now.stop + len(words)] = words
 
-    def __call__(self, threads: int, row: NDArray[np.uint64]) -> None:
-        """Launch so many threads with the words of a step (see `Plan`)."""
+    def __call__(self, threads: int, row: NDArray[np.uint64], *last: int) -> None:
+        """Launch so many threads with the words of a step (see `Plan`), and other last numbers."""
         if threads == 0:
             return
         self._words[0] = threads
+        self._words[len(self._words) - len(last) :] = last
         self._words[self._now] = row[: self._apart]
         self._words[self._field] = row[self._apart :][: self._field.stop - self._field.start]
         self._device.launch(self._kernel, self._words)

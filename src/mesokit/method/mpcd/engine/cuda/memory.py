@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from mesokit.devices.device import BLOCK, Device
 from mesokit.devices.records import WordByWord, adding
 from mesokit.loops.layout import record_length, sums_length
-from mesokit.method.mpcd.engine.beads.interactions import shared_fault
+from mesokit.method.mpcd.engine.beads.allocate import allocate_beads
+from mesokit.method.mpcd.engine.beads.interactions import SHARED, shared_fault
 from mesokit.method.mpcd.engine.cell_gradient import NeighbourSums
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
 from mesokit.method.mpcd.engine.cpu.physics import Physics
+from mesokit.method.mpcd.engine.cuda.bead_memory import BeadMemory
 from mesokit.method.mpcd.engine.cuda.kernels.groups import DeviceFluid, Kinds
 from mesokit.method.mpcd.engine.cuda.kernels.sort import CHUNK
 from mesokit.method.mpcd.engine.cuda.tables import Tables
@@ -24,7 +26,6 @@ from mesokit.method.mpcd.engine.parameters import parameters_of
 from mesokit.method.mpcd.thermostat.protocol import draw
 
 REAL, WHOLE = 8, 4  # bytes of a number
-FAULTS = 2  # numbers that tell of the first bond that tore
 
 
 class DeviceMemory:
@@ -36,6 +37,7 @@ class DeviceMemory:
     def __init__(self, numbers: Numbers, device: Device, measures: Sequence[str]) -> None:
         d = numbers.dimension
         self.numbers, self.device, self.step = numbers, device, 0
+        self.threads, self.domain = 1, None  # of what readings hold in this process
         self.measures = frozenset(measures)
         self._parameters = parameters_of(numbers)
         self.physics = self._parameters.physics
@@ -47,9 +49,17 @@ class DeviceMemory:
         self.walls = None
         if numbers.virtual != "none":
             self.walls = WallMemory(numbers, device, self.room, "walls" in self.measures)
-        self.solutes: Any = ()
+        self.solutes, self.beads = self._solutes()
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
+
+    def _solutes(self) -> tuple[Any, BeadMemory | None]:
+        """Beads of solutes as readings know them, and on the device."""
+        given = self.numbers.case.solutes
+        if given is None:
+            return (), None
+        beads = allocate_beads(given, self)
+        return beads, BeadMemory(beads, self.number_of_cells, self.device, self.tables, self.room)
 
     @property
     def plain(self) -> tuple[Physics, DeviceFluid]:
@@ -111,7 +121,7 @@ class DeviceMemory:
             doubts=self.room(WHOLE),
             tensor=self._tensor(),
             molecules=n // self.numbers.beads,
-            faults=self.room(FAULTS * REAL),
+            faults=self.room(SHARED * REAL),
         )
 
     @property
@@ -241,11 +251,11 @@ class DeviceMemory:
     @property
     def faults(self) -> NDArray[np.int64]:
         """Step and beads of the first bond that tore (1, 3)."""
-        return np.array([shared_fault(self.row(self.fluid.faults, np.int64, 0, FAULTS))])
+        return np.array([shared_fault(self.row(self.fluid.faults, np.int64, 0, SHARED))])
 
     def clear_faults(self) -> None:
         """Forget bonds that tore."""
-        self.device.clear(self.fluid.faults, FAULTS * REAL)
+        self.device.clear(self.fluid.faults, SHARED * REAL)
 
     def taken_by_surfaces(self) -> NDArray[np.int64]:
         """What surfaces took since the last call, as whole numbers."""

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import words_of
 from mesokit.method.mpcd.engine.cpu.groups import Course
+from mesokit.method.mpcd.engine.cuda.bead_stages import BeadStages
 from mesokit.method.mpcd.engine.cuda.kernels.beads.molecules import sweep_molecule
 from mesokit.method.mpcd.engine.cuda.kernels.cells import (
     collide_cell,
@@ -46,6 +47,13 @@ class Steps:
                 return self._of_step(body, of_walls, *given)
 
             self._walls = WallStages(memory, memory.walls, made, FEW)
+        self._beads = None
+        if memory.beads is not None:
+
+            def of_beads(body: Any, *given: Any) -> StepKernel:
+                return self._of_step(body, physics, memory.fluid, *given)
+
+            self._beads = BeadStages(memory.beads, self.device, of_beads)
         if memory.has_doubts:
             self._doubt = self._of_step(collide_doubtful, of_cells, memory.fluid, FEW)
         if memory.fluid.neighbour_sums:
@@ -73,6 +81,8 @@ class Steps:
             self.step(rows[n])
         if course.steps:
             self._sweep(self.memory.fluid.molecules, rows[-1])  # v: the collision at the end
+            if self._beads is not None:
+                self._beads.collide(rows[-1])
 
     def step(self, row: Row) -> None:
         """One collision interval: r, v from t to t + dt."""
@@ -82,16 +92,23 @@ class Steps:
         self._sweep(memory.fluid.molecules, row)  # v: the collision at t; r, v: t -> t + dt; sums
         if self.among_solids:
             self._bounce(FEW, row)  # the same for those that may meet a surface
+        if self._beads is not None:
+            self._beads.collide(row)  # v: the collision at t
+            self._beads.move(row)  # r, v: t -> t + dt, in sub-steps
         if self._walls is not None:
             self._walls.fill(row)  # virtual particles at t + dt
             self._walls.follow(row)  # flow near surfaces, for the next step
             self._walls.top_up(row)  # virtual particles up to the mean number of a cell
         if memory.fluid.neighbour_sums:
             self.device.launch(self._fill, self._sums)  # sums for gradients over neighbours
+        if self._beads is not None:
+            self._beads.join(row)  # cells with solutes: coefficients from the sums of both
         if memory.has_doubts:
             self.device.clear(memory.fluid.doubts, WHOLE)
         self._collide(memory.number_of_cells, row)  # thermostat, rule at t + dt: coefficients
         if memory.has_doubts:
             self._doubt(FEW, row)  # the same where the thermostat must draw with care
+        if self._beads is not None:
+            self._beads.answer(row)  # they replace those of the fluid alone
         if self._walls is not None:
             self._walls.recoil(row)  # what the collision takes from virtual particles

@@ -1,0 +1,125 @@
+"""Solutes on a device: the bits of the processor's engine, without a card."""
+
+import numpy as np
+import pytest
+
+from mesokit import (
+    FENE,
+    SRD,
+    WCA,
+    ATPlusA,
+    Bending,
+    Disk,
+    Harmonic,
+    MagneticField,
+    MaxwellBoltzmann,
+    Plates,
+    Polymer,
+    Pull,
+    RunError,
+    Solutes,
+    Surface,
+    Trap,
+    Uniform,
+)
+from mesokit.devices.host import Host
+from mesokit.method.mpcd.engine.beads.neighbours import CROWDED
+from mesokit.method.mpcd.engine.cuda.refused import refused
+from tests.helpers.kinds_of_fluid import AMONG_MOLECULES, DISSOLVED, EMBEDDED, SEVERAL_KINDS
+from tests.helpers.on_devices import bulk, pair
+from tests.helpers.small_fluids import assert_same, make_case
+
+HELD = {"thermostat": MaxwellBoltzmann()}
+CHAINS = Solutes(
+    (Polymer(6, length=5), Polymer(10)), mass=4.0, bond=Harmonic(K=2.0),
+    bending=Bending(kappa=2.0), pair=WCA(sigma=0.5), substeps=30,
+)  # fmt: skip
+AT_WALLS = Solutes((Polymer(12, length=3),), mass=4.0, bond=Harmonic(K=2.0), substeps=8)
+REPELLED = Solutes((Polymer(12),), mass=4.0, wall=WCA(sigma=0.5), substeps=20)
+BALLS = Solutes((Polymer(10),), mass=3.0, substeps=8)
+DRIVEN = Solutes(
+    (Polymer(5, length=4),), mass=3.0, bond=Harmonic(K=1.0), substeps=8,
+    pulls=(Pull((0.3, 0.0, 0.1), bead=-1),), traps=(Trap((2.0, 2.5, 3.0), k=2.0, bead=1),),
+    magnetic=(MagneticField((0.5, 0.2, 1.0), charge=2.0),),
+)  # fmt: skip
+SLIT = {"size": (13, 7), "density": 10, "timestep": 0.3, "force": Uniform((0.05, -0.02)), **HELD}
+MOVING = [Plates("y", upper=Surface(velocity=(0.3, 0.0)))]
+QUICK = {"sheared chains with lists": bulk(2) | HELD | {"shear_rate": 0.2, "solutes": CHAINS}}
+LONG = {
+    "chains": bulk(2) | HELD | {"solutes": CHAINS},
+    "beads and a rule that draws": bulk(2) | {"collision": ATPlusA(), "solutes": BALLS},
+    "chains from outside": bulk(3) | {"solutes": DRIVEN},
+    "chains in a slit": SLIT | {"walls": MOVING, "solutes": AT_WALLS},
+    "beads that walls repel": SLIT | {"walls": MOVING, "solutes": REPELLED},
+    "beads that a disk repels": SLIT | {
+        "size": (16, 12), "walls": [Disk(centre=(8, 6), radius=3)], "solutes": REPELLED,
+    },
+    "several kinds": {"size": (8, 8, 8), "density": 5, **HELD, "solutes": SEVERAL_KINDS},
+    "random solvent": bulk(3) | HELD | {
+        "solutes": Solutes((Polymer(30),), mass=3.0, solvent="random", substeps=4),
+    },
+    **DISSOLVED,
+    **{f"among molecules: {name}": kind for name, kind in AMONG_MOLECULES.items()},
+}  # fmt: skip
+KINDS = [
+    *(pytest.param(kind, id=name) for name, kind in QUICK.items()),
+    *(pytest.param(kind, id=name, marks=pytest.mark.long) for name, kind in LONG.items()),
+]
+
+
+def of_beads(fluid) -> list:
+    """Readings of solutes."""
+    beads = fluid.solutes
+    moving = beads.places, beads.velocities, *beads.folded(), beads.motion()
+    return [*moving, fluid.potential_energy(), fluid.bond_vectors()]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_solutes_have_the_same_bits(kind) -> None:
+    parts = {name: part for name, part in kind.items() if name != "measures"}
+    both = pair(Host(7), ("stress", "walls"), **parts)
+    for steps in (12, 18):
+        both.advance(steps, ("stress",))
+        assert_same(of_beads(both.cpu), of_beads(both.on_device))
+        one, other = (engine.state() for engine in both)
+        assert_same(one.values(), other.values())
+        assert_same(both.cpu.stress.values(), both.on_device.stress.values())
+    both.on_device.restore(one)  # beads moved by hand
+    both.on_device.advance(2)
+    both.cpu.advance(2)
+    assert_same(of_beads(both.cpu), of_beads(both.on_device))
+
+
+@pytest.mark.long
+def test_beads_with_more_neighbours_than_a_list_has_room_for_look_at_all() -> None:
+    crowd = Solutes((Polymer(120),), mass=4.0, pair=WCA(sigma=1.0), substeps=4)
+    both = pair(Host(7), **bulk(2) | {"solutes": crowd, "collision": SRD(angle=130.0)})
+    places = np.random.default_rng(3).uniform(3.0, 4.0, (120, 2)).ravel()
+    state = both.cpu.state() | {"solute_r": places, "solute_v": 0.0 * places}
+    for engine in both:
+        engine.restore(state)
+        engine.advance(1)
+    counts = both.on_device.memory.row(both.on_device.memory.beads.lists.count, np.int32, 0, 120)
+    assert (counts == CROWDED).any()
+    assert_same(of_beads(both.cpu), of_beads(both.on_device))
+
+
+def test_a_bond_of_beads_that_tears_is_named_as_on_the_processor() -> None:
+    chains = Solutes((Polymer(6, length=5),), mass=4.0, bond=FENE(), substeps=30)
+    both = pair(Host(7), **bulk(2) | {"solutes": chains})
+    whole, torn = both.cpu.state(), both.cpu.state()
+    torn["solute_r"][[2 * 7, 2 * 20]] += 5.0
+    lines = []
+    for engine in both:
+        engine.restore(torn)
+        with pytest.raises(RunError, match="the bond of beads") as error:
+            engine.advance(1)
+        lines.append(str(error.value))
+    assert lines[0] == lines[1]
+    both.on_device.restore(whole)
+    both.on_device.advance(1)  # that is forgotten
+
+
+def test_solutes_that_act_by_a_potential_are_refused() -> None:
+    (line,) = refused(make_case((8, 8, 8), density=5, solutes=EMBEDDED))
+    assert line.startswith("solutes.coupling = 'potential': not on a device yet")
