@@ -210,8 +210,8 @@ def test_a_kernel_is_found_again_by_another_process() -> None:
     code = (
         "import sys, numba; from numba import types\n"
         "from mesokit.devices.cubins import made\n"
-        "from mesokit.method.mpcd.engine.cuda.kernels.sort import gather_reals\n"
-        "new = made(gather_reals, (types.int64,) * 3, (9, 0))\n"
+        "from mesokit.method.mpcd.engine.cuda.kernels.sort import lift_by_chunk\n"
+        "new = made(lift_by_chunk, (types.int64,) * 2, (9, 0))\n"
         "print('numba.cuda.compiler' in sys.modules, hash(new.cubin) and len(new.cubin))\n"
     )
     first, second = (
