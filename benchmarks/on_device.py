@@ -109,9 +109,13 @@ def least_bytes(numbers: Numbers) -> dict[str, int]:
 
 
 def predicted(numbers: Numbers, name: str) -> float | None:
-    """Particle-steps in a second on the card of a name, without sorts; None for others."""
+    """Particle-steps in a second on the card of a name, without walls and sorts; None for others.
+
+    Molecules have no prediction.
+    """
+    single = numbers.case.fluid.molecule is None
     for card in CARDS:
-        if card.name.removesuffix(" 80 GB") in name:
+        if single and card.name.removesuffix(" 80 GB") in name:
             return numbers.n / seconds_of_step(numbers, card)
     return None
 

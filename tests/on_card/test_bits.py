@@ -7,7 +7,19 @@ import math
 import numpy as np
 import pytest
 
-from mesokit import SRD, MaxwellBoltzmann, Plates, Species, Sphere, SRDPlusA, Uniform
+from mesokit import (
+    FENE,
+    SRD,
+    WCA,
+    Harmonic,
+    MaxwellBoltzmann,
+    Molecule,
+    Plates,
+    Species,
+    Sphere,
+    SRDPlusA,
+    Uniform,
+)
 from mesokit.devices.device import words_of
 from mesokit.devices.recorded import Tape
 from mesokit.scalar.jit import scalar
@@ -26,6 +38,17 @@ WALLS = {
     "sphere, SRD+a": {
         "walls": [Sphere(centre=(6.1, 6.0, 6.0), radius=3.8)],
         "collision": SRDPlusA(angle=130.0),
+    },
+}
+BEADS = {
+    "chains": {"molecule": Molecule(length=4, bond=Harmonic(K=1.0), substeps=2)},
+    "stiff rings": {
+        "molecule": Molecule(topology="ring", length=4, bond=FENE(), pair=WCA(), substeps=20),
+        "timestep": 0.1,
+    },
+    "chains between plates": {
+        "molecule": Molecule(length=4, bond=Harmonic(K=1.0), substeps=2),
+        "walls": [Plates("y")],
     },
 }
 TAPES = ("2D rule AT", "3D rule SRD", "3D thermostat MaxwellBoltzmann")
@@ -54,6 +77,13 @@ def test_arithmetic_is_rounded_as_on_the_processor(card) -> None:
 def test_bulk_fluids_have_the_same_bits(card, kind) -> None:
     both = pair(card, ("stress",), **BULK[kind])
     both.advance(STEPS, ("stress",))
+    both.require_same()
+
+
+@pytest.mark.parametrize("kind", BEADS)
+def test_molecules_have_the_same_bits(card, kind) -> None:
+    both = pair(card, ("stress",), size=(8, 8, 8), **(DRIVEN | BEADS[kind]))
+    both.advance(40, ("stress",))
     both.require_same()
 
 
