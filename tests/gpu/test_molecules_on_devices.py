@@ -6,7 +6,6 @@ import pytest
 from mesokit import (
     AT,
     FENE,
-    SRD,
     WCA,
     Bending,
     Disk,
@@ -22,11 +21,12 @@ from mesokit.devices.host import Host
 from tests.helpers.on_devices import bulk, pair
 from tests.helpers.small_fluids import assert_same
 
+HOST, MEASURED = Host(7), ("stress", "walls")
 SPRING = Harmonic(K=1.0)
 PUSHED = {"thermostat": MaxwellBoltzmann(), "force": Uniform((0.05, -0.02))}
 CHAINS = bulk(2) | {"density": 9, "molecule": Molecule(length=3, bond=SPRING, substeps=2)}
 SHEARED = bulk(3) | {
-    "density": 7, "molecule": Molecule(length=7, bond=SPRING, substeps=2),
+    "density": 7, "molecule": Molecule(length=7, bond=FENE()),
     "thermostat": MaxwellBoltzmann(), "shear_rate": 0.2,
 }  # fmt: skip
 SLIT = bulk(2) | PUSHED | {
@@ -72,7 +72,7 @@ def of_bonds(fluid) -> list:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_molecules_have_the_same_bits(kind) -> None:
-    both = pair(Host(7), ("stress", "walls"), **kind)
+    both = pair(HOST, MEASURED, **kind)
     for steps in (12, 28):
         both.advance(steps, ("stress",))
         both.require_same()
@@ -80,13 +80,9 @@ def test_molecules_have_the_same_bits(kind) -> None:
 
 
 def test_a_bond_that_tears_is_named_as_on_the_processor() -> None:
-    parts = bulk(2) | {
-        "density": 9, "collision": SRD(angle=130.0),
-        "molecule": Molecule(length=3, bond=FENE(), substeps=240),
-    }  # fmt: skip
-    both = pair(Host(7), **parts)
+    both = pair(HOST, MEASURED, **SHEARED)
     whole, state = both.cpu.state(), both.cpu.state()
-    for bead in (0, 90, 91, 300):  # far from the others of their molecules
+    for bead in (0, 90, 91, 306):  # far from the others of their molecules
         state["positions"][bead] += 5.0
     lines = []
     for engine in both:

@@ -31,8 +31,8 @@ from tests.helpers.small_fluids import assert_same, make_case
 
 HELD = {"thermostat": MaxwellBoltzmann()}
 CHAINS = Solutes(
-    (Polymer(6, length=5), Polymer(10)), mass=4.0, bond=Harmonic(K=2.0),
-    bending=Bending(kappa=2.0), pair=WCA(sigma=0.5), substeps=30,
+    (Polymer(6, length=5), Polymer(10)), mass=4.0, bond=FENE(), bending=Bending(kappa=2.0),
+    pair=WCA(), substeps=100,
 )  # fmt: skip
 AT_WALLS = Solutes((Polymer(12, length=3),), mass=4.0, bond=Harmonic(K=2.0), substeps=8)
 REPELLED = Solutes((Polymer(12),), mass=4.0, wall=WCA(sigma=0.5), substeps=20)
@@ -44,7 +44,9 @@ DRIVEN = Solutes(
 )  # fmt: skip
 SLIT = {"size": (13, 7), "density": 10, "timestep": 0.3, "force": Uniform((0.05, -0.02)), **HELD}
 MOVING = [Plates("y", upper=Surface(velocity=(0.3, 0.0)))]
-QUICK = {"sheared chains with lists": bulk(2) | HELD | {"shear_rate": 0.2, "solutes": CHAINS}}
+HOST, MEASURED = Host(7), ("stress", "walls")
+SHEARED = bulk(2) | HELD | {"shear_rate": 0.2, "solutes": CHAINS}
+QUICK = {"sheared chains with lists": SHEARED}
 LONG = {
     "chains": bulk(2) | HELD | {"solutes": CHAINS},
     "beads and a rule that draws": bulk(2) | {"collision": ATPlusA(), "solutes": BALLS},
@@ -77,7 +79,7 @@ def of_beads(fluid) -> list:
 @pytest.mark.parametrize("kind", KINDS)
 def test_solutes_have_the_same_bits(kind) -> None:
     parts = {name: part for name, part in kind.items() if name != "measures"}
-    both = pair(Host(7), ("stress", "walls"), **parts)
+    both = pair(HOST, MEASURED, **parts)
     for steps in (12, 18):
         both.advance(steps, ("stress",))
         assert_same(of_beads(both.cpu), of_beads(both.on_device))
@@ -93,7 +95,7 @@ def test_solutes_have_the_same_bits(kind) -> None:
 @pytest.mark.long
 def test_beads_with_more_neighbours_than_a_list_has_room_for_look_at_all() -> None:
     crowd = Solutes((Polymer(120),), mass=4.0, pair=WCA(sigma=1.0), substeps=4)
-    both = pair(Host(7), **bulk(2) | {"solutes": crowd, "collision": SRD(angle=130.0)})
+    both = pair(HOST, **bulk(2) | {"solutes": crowd, "collision": SRD(angle=130.0)})
     places = np.random.default_rng(3).uniform(3.0, 4.0, (120, 2)).ravel()
     state = both.cpu.state() | {"solute_r": places, "solute_v": 0.0 * places}
     for engine in both:
@@ -105,8 +107,7 @@ def test_beads_with_more_neighbours_than_a_list_has_room_for_look_at_all() -> No
 
 
 def test_a_bond_of_beads_that_tears_is_named_as_on_the_processor() -> None:
-    chains = Solutes((Polymer(6, length=5),), mass=4.0, bond=FENE(), substeps=30)
-    both = pair(Host(7), **bulk(2) | {"solutes": chains})
+    both = pair(HOST, MEASURED, **SHEARED)
     whole, torn = both.cpu.state(), both.cpu.state()
     torn["solute_r"][[2 * 7, 2 * 20]] += 5.0
     lines = []

@@ -19,6 +19,12 @@ WIDER = {"u64": "unsigned __int128", "s64": "__int128", "u32": "uint64_t", "s32"
 OPERATORS = {
     "add": "+", "sub": "-", "mul": "*", "div": "/", "rem": "%", "and": "&", "or": "|", "xor": "^",
 }  # fmt: skip
+CLASSES = {  # of real numbers
+    "finite": "isfinite({0})",
+    "infinite": "isinf({0})",
+    "number": "!isnan({0})",
+    "notanumber": "isnan({0})",
+}
 COMPARISONS = {
     "eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">=",
     "lo": "<", "ls": "<=", "hi": ">", "hs": ">=",
@@ -326,6 +332,9 @@ class Translation:
             return self._put(to[0], wanted, f"{wanted}_of({value})")
         assert given[0] != "f" or wanted[0] == "f"
         return self._put(to[0], wanted, f"({TYPES[wanted]}){value}")
+
+    def _do_testp(self, words: list[str], to: list[str]) -> str:
+        return self._put(to[0], "pred", CLASSES[words[0]].format(self._value(to[1], words[1])))
 
     def _do_setp(self, words: list[str], to: list[str]) -> str:
         compare, kind = words[0], words[-1]

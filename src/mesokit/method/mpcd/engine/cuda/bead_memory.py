@@ -64,8 +64,9 @@ class BeadMemory:
             halo=(),
         )
         self.met = Meetings(
-            count=room(cells * WHOLE),
-            start=room(cells * WHOLE),
+            cells=cells,
+            count=room((cells + 1) * WHOLE),
+            start=room((cells + 1) * WHOLE),
             members=room(n * WHOLE),
             rank=room(n * WHOLE),
             taken=room(WHOLE),

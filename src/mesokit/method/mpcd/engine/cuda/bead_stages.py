@@ -14,10 +14,10 @@ from mesokit.method.mpcd.engine.cuda.kernels.beads.meetings import (
     reserve_members,
 )
 from mesokit.method.mpcd.engine.cuda.kernels.beads.solutes import (
+    bin_solute,
     collide_solute,
     drift_solute,
     kick_solute,
-    meet_cell,
     renew_list,
     stay_solute,
 )
@@ -37,7 +37,7 @@ class BeadStages:
         self._drift, self._kick = made(drift_solute, beads, 0), made(kick_solute, beads, 0)
         if memory.lists is not None:
             self._stay, self._renew = made(stay_solute, beads, 0), made(renew_list, beads, 0)
-        self._meet = made(meet_cell, beads, met)
+        self._bin = made(bin_solute, beads, met)
         self._join, self._answer = made(join_cell, beads, met), made(answer_cell, beads, met)
         given = beads.cell, met
         self._reserve, self._enter = (
@@ -62,7 +62,7 @@ class BeadStages:
             if lists is not None:
                 self._renew(memory.number, row, n)
             self._kick(memory.number, row, n)
-        self._meet(memory.number, row)
+        self._bin(memory.number, row)
 
     def join(self, row: Row) -> None:
         """Cells with beads: coefficients from the sums of both."""

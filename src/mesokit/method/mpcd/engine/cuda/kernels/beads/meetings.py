@@ -15,10 +15,13 @@ from mesokit.scalar.pointer import put_reals, put_whole, reals, take_number, who
 class Meetings(NamedTuple):
     """Which beads are in each cell, by addresses of int32 numbers.
 
-    count (cells,): how many they are, start (cells,): where they begin in `members` (beads,).
+    cells: their number; one more has the beads whose places are no numbers, which do not collide.
+    count (cells + 1,): how many are in each, start (cells + 1,): where they begin in `members`
+    (beads,).
     rank (beads,): place of each among those of its cell. taken: so many places have been given.
     """
 
+    cells: int
     count: Any
     start: int
     members: int
@@ -43,8 +46,8 @@ def enter_members(i, cell, met):
 @scalar
 def join_cell(i, physics, now, fluid, beads, met):
     """Coefficients for a cell with beads, from sums that `collide_cell` is about to clear."""
-    if whole(met.rank, i) == 0:
-        cell = whole(beads.cell, i)
+    cell = whole(beads.cell, i)
+    if whole(met.rank, i) == 0 and cell < met.cells:
         first, number = whole(met.start, cell), whole(met.count, cell)
         sort_down(met.members, first, first + number)
         start = cell * sums_length(len(physics.terms))
@@ -71,8 +74,9 @@ def sort_down(members, first, last):
 @scalar
 def answer_cell(i, physics, now, fluid, beads, met):
     """Replace the coefficients that `collide_cell` found without beads."""
+    cell, needed = whole(beads.cell, i), physics.coefficients
     if whole(met.rank, i) == 0:
-        cell, needed = whole(beads.cell, i), physics.coefficients
-        answer = reals(beads.answers, i * len(needed), needed)
-        put_reals(fluid.coefficients, cell * record_length(len(needed)), answer)
         put_whole(met.count, cell, 0)
+        if cell < met.cells:
+            answer = reals(beads.answers, i * len(needed), needed)
+            put_reals(fluid.coefficients, cell * record_length(len(needed)), answer)

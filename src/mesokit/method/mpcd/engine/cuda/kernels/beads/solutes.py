@@ -159,7 +159,7 @@ def renew_list(i, physics, now, fluid, beads, n):
 
 
 @scalar
-def meet_cell(i, physics, now, fluid, beads, met):
+def bin_solute(i, physics, now, fluid, beads, met):
     """The cell of a bead at t + dt, what it brings there, and its place among the beads there."""
     if now.flags & MEASURE_STRESS:
         tensor = tensor_row(beads, 0, i, physics.zero)
