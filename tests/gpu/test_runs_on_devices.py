@@ -7,9 +7,13 @@ import subprocess
 
 import pytest
 
-from mesokit import Simulation
+from mesokit import Plates, Simulation
+from mesokit.devices.host import Host
 from mesokit.errors import CaseError
+from mesokit.method.mpcd.engine.cuda.cost import memory_of
+from mesokit.method.mpcd.engine.cuda.engine import CUDA
 from tests.helpers.rank_runs import MESOKIT, MPIEXEC, Ranks, same_files
+from tests.helpers.small_fluids import make_case
 
 STEPS = 40
 CASE = """
@@ -92,6 +96,12 @@ def test_what_a_device_takes_is_known_without_a_card(case, tmp_path) -> None:
     assert "device memory" in out
     assert "on one H200" in out
     assert "not measured" in out
+
+
+@pytest.mark.parametrize("walls", [(), (Plates("y", virtual="none"),)], ids=["bulk", "plates"])
+def test_the_memory_that_is_told_is_what_an_engine_takes(walls) -> None:
+    engine = CUDA(make_case((20, 21, 22), density=10, walls=walls), Host())
+    assert memory_of(engine.numbers) == pytest.approx(engine.memory.bytes_held, rel=0.02)
 
 
 def test_methods_without_kernels_are_refused(tmp_path) -> None:

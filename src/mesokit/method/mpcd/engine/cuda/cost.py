@@ -50,7 +50,7 @@ def memory_of(numbers: Numbers) -> int:
     row = 2 * d * REAL + d * WHOLE + WHOLE  # positions, velocities, images, number
     spare = REAL + 2 * WHOLE + WHOLE * among_solids  # of sorts, and the list of flights
     cell = sums_length(len(numbers.scales)) * REAL
-    cell += record_length(numbers.coefficient_count) * REAL + WHOLE
+    cell += record_length(numbers.coefficient_count) * REAL + 2 * WHOLE
     return numbers.n * (row + spare) + numbers.number_of_cells * cell
 
 
