@@ -21,9 +21,14 @@ from mesokit.kernels.made_of import describe_type
 from mesokit.kernels.store import folder
 
 COMPILERS = (
-    "numba", "llvmlite", "numba-cuda", "nvidia-nvvm", "nvidia-nvjitlink",
-    "nvidia-cuda-nvcc-cu12", "nvidia-nvjitlink-cu12",
-)  # fmt: skip
+    "numba",
+    "llvmlite",
+    "numba-cuda",
+    "nvidia-nvvm",
+    "nvidia-nvjitlink",
+    "nvidia-cuda-nvcc-cu12",
+    "nvidia-nvjitlink-cu12",
+)
 TEXT, CUBIN, SAID = "kernel.ptx", "kernel.cubin", "assembler.txt"
 
 
