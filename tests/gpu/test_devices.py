@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import ctypes
 import re
 import subprocess
 import sys
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -33,7 +31,9 @@ from mesokit.scalar.pointer import (
     take_number,
     word,
 )
+from tests.helpers.fake_driver import FakeDriver
 
+CHIP = (9, 0)
 CHIPS = ((8, 0), (9, 0), (12, 0))
 THREADS = 300  # more than a block, and a block that is not full
 
@@ -234,7 +234,7 @@ def test_a_tape_replays_to_the_same_bits(tmp_path) -> None:
     assert tape.about == {"what": "work"}
     assert tape.chip == (9, 0)
     assert tape.play(Emulated(seed=9)).reads == []
-    assert tape.play(Cuda(driver=FakeDriver())).reads == []
+    assert tape.play(Cuda(driver=driver_that_knows_work())).reads == []
     np.testing.assert_array_equal(found, expected_work()[0])
 
 
@@ -255,103 +255,16 @@ def test_other_bits_are_seen_by_a_tape(tmp_path) -> None:
 # --- the driver ----------------------------------------------------------------------------------
 
 
-class FakeDriver:
-    """The driver's functions, as they are called; kernels are run from their PTX.
+def driver_that_knows_work() -> FakeDriver:
+    """The fake driver, with the PTX of the kernel of `run_work`."""
+    from numba import types
 
-    It is no card: kernels come as machine code, which it knows by the PTX that it was made of.
-    """
-
-    CUdevice_attribute = SimpleNamespace(
-        CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR="major",
-        CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR="minor",
-    )
-
-    def __init__(self, chip=(9, 0), version=13010, cards=1, size=1 << 20, init=0) -> None:
-        self.chip, self.version, self.cards, self.size, self.init = chip, version, cards, size, init
-        self.memory: dict[int, np.ndarray] = {}
-        self.behind = Emulated(chip)
-
-    def cuInit(self, flags):
-        return (self.init,)
-
-    def cuDriverGetVersion(self):
-        return 0, self.version
-
-    def cuDeviceGetCount(self):
-        return 0, self.cards
-
-    def cuDeviceGet(self, ordinal):
-        return 0, ordinal
-
-    def cuDeviceGetName(self, length, device):
-        return 0, b"A card\0\0"
-
-    def cuDeviceGetAttribute(self, kind, device):
-        return 0, self.chip[kind == "minor"]
-
-    def cuDevicePrimaryCtxRetain(self, device):
-        return 0, "context"
-
-    def cuCtxSetCurrent(self, context):
-        return (0,)
-
-    def cuMemGetInfo(self):
-        return 0, self.size - sum(block.size for block in self.memory.values()), self.size
-
-    def cuMemAlloc(self, size):
-        if size > self.cuMemGetInfo()[1]:
-            return 2, None
-        block = np.full(size, 0xAB, np.uint8)  # not 0, as that of a card
-        self.memory[block.ctypes.data] = block
-        return 0, block.ctypes.data
-
-    def cuMemFree(self, address):
-        del self.memory[address]
-        return (0,)
-
-    def cuMemcpyHtoD(self, to, source, size):
-        assert self.memory[to].size >= size
-        ctypes.memmove(to, source, size)
-        return (0,)
-
-    def cuMemcpyDtoH(self, to, source, size):
-        assert self.memory[source].size >= size
-        ctypes.memmove(to, source, size)
-        return (0,)
-
-    def cuMemsetD8(self, to, value, size):
-        assert self.memory[to].size >= size
-        ctypes.memset(to, value, size)
-        return (0,)
-
-    def cuModuleLoadData(self, cubin):
-        assert isinstance(cubin, bytes)
-        assert cubin[:4] == b"\x7fELF"
-        return 0, cubin
-
-    def cuModuleGetFunction(self, module, name):
-        from numba import types
-
-        assert name.decode() == ENTRY
-        pair = types.UniTuple(types.int64, 2)
-        new = made(work, (types.float64, pair), self.chip)
-        assert new.cubin == module
-        return 0, self.behind.loaded(new.ptx, new.cubin)
-
-    def cuLaunchKernel(self, kernel, gx, gy, gz, bx, by, bz, shared, stream, parameters, extra):
-        assert (gy, gz, by, bz, shared, stream, extra) == (1, 1, 1, 1, 0, 0, 0)
-        places = np.ctypeslib.as_array((ctypes.c_uint64 * 4).from_address(parameters))
-        words = np.array([ctypes.c_uint64.from_address(int(at)).value for at in places], np.uint64)
-        assert gx == -(-int(words[0]) // bx)
-        self.behind.launch(kernel, words)
-        return (0,)
-
-    def cuCtxSynchronize(self):
-        return (0,)
+    new = made(work, (types.float64, types.UniTuple(types.int64, 2)), CHIP)
+    return FakeDriver(CHIP, known={new.cubin: new.ptx})
 
 
 def test_the_driver_is_called_as_it_wants() -> None:
-    driver = FakeDriver()
+    driver = driver_that_knows_work()
     device = Cuda(driver=driver)
     for found, expected in zip(run_work(device), expected_work(), strict=True):
         np.testing.assert_array_equal(found, expected)

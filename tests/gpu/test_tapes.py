@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from mesokit.devices.cuda import Cuda
 from mesokit.devices.emulated import Emulated
 from mesokit.devices.recorded import Tape
+from tests.helpers.fake_driver import FakeDriver
 from tests.helpers.on_devices import kinds_of_bulk, record
 
 CHIP = (9, 0)
@@ -33,3 +35,11 @@ def test_a_fluid_on_a_tape_has_the_same_bits_in_any_order_of_threads(tmp_path) -
     assert other_order.expected == []
     assert other_order.reads != []  # rows lie in another order, which a hash of them would blame
     assert len(tape.play(OneBitLess(CHIP, seed=1)).expected) == 1
+
+
+def test_a_fluid_on_a_tape_is_played_by_calls_of_the_driver(tmp_path) -> None:
+    record(tmp_path / "fluid.tape", CHIP, **KIND)
+    tape = Tape(tmp_path / "fluid.tape")
+    driver = FakeDriver(CHIP, known={cubin: ptx for ptx, cubin in tape.kernels})
+    assert tape.play(Cuda(driver=driver)).expected == []
+    assert len(driver.memory) > 10  # of the fluid

@@ -56,9 +56,10 @@ def pair(device: Any, measures: Sequence[str] = (), **parts: Any) -> Pair:
 def record(file: Path, chip: Chip, **parts: Any) -> None:
     """Write the tape of a small fluid, which expects its rows in the order of particles."""
     recorded = Recorded(Emulated(chip))
-    engine = CUDA(make_case(**parts), recorded)
+    measures = ("stress",)  # as tests of bulk fluids have, which share the kernels
+    engine = CUDA(make_case(**parts), recorded, measures)
     start(engine)
-    engine.advance(STEPS)
+    engine.advance(STEPS, measures)
     rows = engine.memory.fluid
     reals = [(row, "float64") for row in (*rows.r, *rows.v)]
     wholes = [(row, "int32") for row in (rows.ident, *rows.image)]

@@ -156,7 +156,7 @@ class Differences(NamedTuple):
 
 
 class Tape:
-    """A tape in a file; `about` is what it says of itself.
+    """A tape in a file; `about` is what it says of itself, `kernels` PTX and machine code of each.
 
     Raises ValueError for a file that is none.
     """
@@ -168,7 +168,7 @@ class Tape:
                 arrays = np.load(io.BytesIO(parts.read("arrays.npz")))
                 self._arrays = [arrays[f"arr_{k}"] for k in range(len(arrays.files))]
                 names = {name for name in parts.namelist() if name.startswith("kernel-")}
-                self._kernels = [
+                self.kernels = [
                     (parts.read(f"kernel-{k}.ptx").decode(), parts.read(f"kernel-{k}.cubin"))
                     for k in range(len(names) // 2)
                 ]
@@ -181,7 +181,7 @@ class Tape:
 
         The device loads kernels of the tape by `loaded(ptx, cubin)`.
         """
-        kernels = [device.loaded(*kernel) for kernel in self._kernels]
+        kernels = [device.loaded(*kernel) for kernel in self.kernels]
         blocks: list[int] = []
         differ = Differences([], [])
 
