@@ -55,7 +55,9 @@ ROWS = {
         "statistics",
     ),
     "loops/": ("loops", "scalar"),
-    "devices/": ("case.amounts", "case.component", "devices", "errors", "kernels", "scalar", "stub"),
+    "devices/": (
+        "case.amounts", "case.component", "devices", "errors", "kernels", "scalar", "stub",
+    ),
     "devices/names.py": (),
     "processes/": ("errors", "processes"),
     "processes/cores.py": (),
