@@ -57,6 +57,7 @@ ROWS = {
     "loops/": ("loops", "scalar"),
     "devices/": ("case.amounts", "case.component", "devices", "errors", "kernels", "stub"),
     "devices/names.py": (),
+    "devices/records.py": ("devices.device", "scalar"),
     "processes/": ("errors", "processes"),
     "processes/cores.py": (),
     "processes/signals.py": (),
