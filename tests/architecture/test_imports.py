@@ -59,6 +59,7 @@ ROWS = {
         "case.amounts", "case.component", "devices", "errors", "kernels", "scalar", "stub",
     ),
     "devices/names.py": (),
+    "devices/records.py": ("devices.device", "scalar"),
     "processes/": ("errors", "processes"),
     "processes/cores.py": (),
     "processes/signals.py": (),

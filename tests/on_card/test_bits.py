@@ -11,10 +11,13 @@ from mesokit import (
     FENE,
     SRD,
     WCA,
+    Bending,
     Harmonic,
     MaxwellBoltzmann,
     Molecule,
     Plates,
+    Polymer,
+    Solutes,
     Species,
     Sphere,
     SRDPlusA,
@@ -51,6 +54,14 @@ BEADS = {
         "walls": [Plates("y")],
     },
 }
+CHAINS = Solutes(
+    (Polymer(40, length=5),),
+    mass=4.0,
+    bond=FENE(),
+    pair=WCA(),
+    bending=Bending(kappa=2.0),
+    substeps=50,
+)
 TAPES = ("2D rule AT", "3D rule SRD", "3D thermostat MaxwellBoltzmann")
 NUMBERS = 10_001
 
@@ -83,6 +94,12 @@ def test_bulk_fluids_have_the_same_bits(card, kind) -> None:
 @pytest.mark.parametrize("kind", BEADS)
 def test_molecules_have_the_same_bits(card, kind) -> None:
     both = pair(card, ("stress",), size=(8, 8, 8), **(DRIVEN | BEADS[kind]))
+    both.advance(40, ("stress",))
+    both.require_same()
+
+
+def test_solutes_have_the_same_bits(card) -> None:
+    both = pair(card, ("stress",), size=(10, 10, 10), solutes=CHAINS, **DRIVEN)
     both.advance(40, ("stress",))
     both.require_same()
 
