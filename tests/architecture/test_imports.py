@@ -55,9 +55,7 @@ ROWS = {
         "statistics",
     ),
     "loops/": ("loops", "scalar"),
-    "devices/": (
-        "case.amounts", "case.component", "devices", "errors", "kernels", "scalar", "stub",
-    ),
+    "devices/": ("case.amounts", "case.component", "devices", "errors", "kernels", "stub"),
     "devices/names.py": (),
     "devices/records.py": ("devices.device", "scalar"),
     "processes/": ("errors", "processes"),
