@@ -5,7 +5,6 @@ import pytest
 
 from mesokit import (
     FENE,
-    SRD,
     WCA,
     ATPlusA,
     Bending,
@@ -94,14 +93,15 @@ def test_solutes_have_the_same_bits(kind) -> None:
 
 @pytest.mark.long
 def test_beads_with_more_neighbours_than_a_list_has_room_for_look_at_all() -> None:
-    crowd = Solutes((Polymer(120),), mass=4.0, pair=WCA(sigma=1.0), substeps=4)
-    both = pair(HOST, **bulk(2) | {"solutes": crowd, "collision": SRD(angle=130.0)})
-    places = np.random.default_rng(3).uniform(3.0, 4.0, (120, 2)).ravel()
+    crowd = Solutes((Polymer(121),), mass=1e6, pair=WCA(sigma=0.2), substeps=60)
+    both = pair(HOST, **bulk(2) | {"solutes": crowd, "timestep": 0.01})
+    side = np.linspace(3.0, 4.0, 11)
+    places = np.stack(np.meshgrid(side, side), axis=-1).ravel()
     state = both.cpu.state() | {"solute_r": places, "solute_v": 0.0 * places}
     for engine in both:
         engine.restore(state)
         engine.advance(1)
-    counts = both.on_device.memory.row(both.on_device.memory.beads.lists.count, np.int32, 0, 120)
+    counts = both.on_device.memory.row(both.on_device.memory.beads.lists.count, np.int32, 0, 121)
     assert (counts == CROWDED).any()
     assert_same(of_beads(both.cpu), of_beads(both.on_device))
 

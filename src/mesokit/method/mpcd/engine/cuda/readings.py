@@ -29,8 +29,9 @@ class DeviceReadings(Readings):
         super().__init__(memory)
 
     def _run(self, body: Callable, threads: int, *given: Any) -> None:
-        device = self.memory.device
-        device.launch(device.kernel(body, given), words_of(threads, *given))
+        if threads:
+            device = self.memory.device
+            device.launch(device.kernel(body, given), words_of(threads, *given))
 
     def _summed(self, shape: tuple[int, ...], fill: Callable[[int], None]) -> NDArray[np.int64]:
         """Whole numbers that kernels add up at an address, which `fill` is given."""
@@ -58,13 +59,13 @@ class DeviceReadings(Readings):
 
         found = self._summed((rows * (len(scales) + 1),), fill)
         fastest = found[size:].view(np.float64)
-        return found[:size].reshape(rows, -1), np.where(np.isnan(fastest), np.inf, fastest)
+        return found[:size].reshape(rows, len(scales)), np.where(np.isnan(fastest), np.inf, fastest)
 
     def _moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
         d, size = self.dimension, math.prod(bins)
         two = (axes + axes)[:2], tuple(float(n) for n in (*bins, 1)[:2])
         scales = tuple(self.numbers.units[name] for name in ["momentum"] * d + ["mass", "energy"])
-        copies = min(max(MANY // size, 1), self._blocks)
+        copies = max(min(MANY // size, self._blocks), 1)
 
         def fill(address: int) -> None:
             physics, fluid = self.memory.plain
@@ -80,7 +81,7 @@ class DeviceReadings(Readings):
         return values[0], values[d + 1], values[1 : d + 1], values[d + 2]
 
     def _wave_sums(self, turns: Floats, scale: float, first: int, last: int) -> NDArray[np.int64]:
-        copies = min(max(MANY // max(len(turns), 1), 1), self._blocks)
+        copies = max(min(MANY // max(len(turns), 1), self._blocks), 1)
         device = self.memory.device
         there = self.memory.room(turns.nbytes)
         device.write(there, turns)
@@ -121,8 +122,7 @@ class DeviceReadings(Readings):
         memory.device.write(rooms[0], chosen)
         physics, fluid = memory.plain
         given = physics, memory.box, fluid, int(unwrapped), rooms[0], tuple(rooms[1:])
-        if threads:
-            self._run(body, threads, *given)
+        self._run(body, threads, *given)
         for room, array in zip(rooms[1:], arrays, strict=True):
             memory.device.read(room, array)
         for room, size in zip(rooms, sizes, strict=True):
