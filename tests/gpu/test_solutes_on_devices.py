@@ -17,16 +17,17 @@ from mesokit import (
     Pull,
     RunError,
     Solutes,
+    Species,
     Surface,
     Trap,
     Uniform,
 )
+from mesokit.devices.checked import Checked
 from mesokit.devices.host import Host
 from mesokit.method.mpcd.engine.beads.neighbours import CROWDED
-from mesokit.method.mpcd.engine.cuda.refused import refused
 from tests.helpers.kinds_of_fluid import AMONG_MOLECULES, DISSOLVED, EMBEDDED, SEVERAL_KINDS
 from tests.helpers.on_devices import bulk, pair
-from tests.helpers.small_fluids import assert_same, make_case
+from tests.helpers.small_fluids import assert_same
 
 HELD = {"thermostat": MaxwellBoltzmann()}
 CHAINS = Solutes(
@@ -43,7 +44,7 @@ DRIVEN = Solutes(
 )  # fmt: skip
 SLIT = {"size": (13, 7), "density": 10, "timestep": 0.3, "force": Uniform((0.05, -0.02)), **HELD}
 MOVING = [Plates("y", upper=Surface(velocity=(0.3, 0.0)))]
-HOST, MEASURED = Host(7), ("stress", "walls")
+HOST, CHECKED, MEASURED = Host(7), Checked(), ("stress", "walls")
 SHEARED = bulk(2) | HELD | {"shear_rate": 0.2, "solutes": CHAINS}
 QUICK = {"sheared chains with lists": SHEARED}
 LONG = {
@@ -121,6 +122,51 @@ def test_a_bond_of_beads_that_tears_is_named_as_on_the_processor() -> None:
     both.on_device.advance(1)  # that is forgotten
 
 
-def test_solutes_that_act_by_a_potential_are_refused() -> None:
-    (line,) = refused(make_case((8, 8, 8), density=5, solutes=EMBEDDED))
-    assert line.startswith("solutes.coupling = 'potential': not on a device yet")
+IN_SLIT = {
+    "size": (20, 12), "density": 5, "walls": [Plates("y", virtual="none")], "solutes": EMBEDDED,
+    "force": Uniform((0.02, 0.0)), **HELD,
+}  # fmt: skip
+AROUND = {
+    "in a slit": IN_SLIT,
+    "in a box": {"size": (20, 20), "density": 5, "solutes": EMBEDDED, **HELD},
+    "in a mixture": {
+        "size": (20, 20), "solutes": EMBEDDED, **HELD,
+        "species": (Species(mass=1, density=3), Species(mass=2, density=2)),
+    },
+    "around a disk": IN_SLIT | {
+        "size": (20, 20), "walls": [Disk(centre=(10, 10), radius=3, virtual="none")],
+    },
+}  # fmt: skip
+FIRST = "in a slit"
+AROUND_ROWS = [pytest.param(FIRST, HOST)] + [
+    pytest.param(name, device, marks=pytest.mark.long)
+    for name in AROUND
+    for device in (HOST, CHECKED)
+    if (name, device) != (FIRST, HOST)
+]
+
+
+@pytest.mark.parametrize(("name", "device"), AROUND_ROWS)
+def test_solutes_that_act_by_a_potential_have_the_same_bits(name, device) -> None:
+    both = pair(device, ("walls",), **AROUND[name])
+    for steps in (12, 18):
+        both.advance(steps)
+        one, other = (engine.state() for engine in both)
+        assert_same(one.values(), other.values())
+        assert both.cpu.potential_energy() == both.on_device.potential_energy() > 0.0
+    assert both.on_device.memory.row(both.on_device.memory.beads.near.number, np.int32, 0, 1) > 0
+    assert getattr(device, "faults", {}) == {}
+
+
+def test_a_bead_that_goes_too_far_is_named_as_on_the_processor() -> None:
+    both = pair(HOST, ("walls",), **IN_SLIT)
+    fast = both.cpu.state()
+    fast["solute_v"] = fast["solute_v"].copy()
+    fast["solute_v"][2 * 3] = 100.0
+    lines = []
+    for engine in both:
+        engine.restore(fast)
+        with pytest.raises(RunError, match="bead 4 went farther than") as error:
+            engine.advance(1)
+        lines.append(str(error.value))
+    assert lines[0] == lines[1]

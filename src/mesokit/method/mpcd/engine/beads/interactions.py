@@ -16,7 +16,7 @@ from mesokit.method.mpcd.engine.cpu.bounce import add_recoil
 from mesokit.method.mpcd.engine.cpu.stress import add_product
 from mesokit.potential.angle import bend
 from mesokit.potential.protocol import breaks, central
-from mesokit.scalar.jit import by_type, generic
+from mesokit.scalar.jit import by_type, generic, scalar
 from mesokit.scalar.pointer import raise_to
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
@@ -151,7 +151,7 @@ def note_broken(faults, step, one, other):
     """
     from numba import types
 
-    return _note_for_all if isinstance(faults, types.Integer) else _note_own
+    return note_for_all if isinstance(faults, types.Integer) else _note_own
 
 
 def _note_own(faults, step, one, other):
@@ -162,7 +162,9 @@ def _note_own(faults, step, one, other):
         faults[STEP], faults[FIRST], faults[SECOND] = step, one, other
 
 
-def _note_for_all(faults, step, one, other):
+@scalar
+def note_for_all(faults, step, one, other):
+    """Note a step and two numbers at the address of two, of which the first are kept."""
     present = LATEST - np.int64(step)
     if raise_to(faults, 0, present) <= present:
         raise_to(faults, 1, LATEST - (np.int64(one) << BEAD_BITS | np.int64(other)))

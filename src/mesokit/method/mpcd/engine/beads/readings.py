@@ -16,7 +16,7 @@ from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
 from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
-from mesokit.method.mpcd.engine.embedded.readings import energy_in_fluid, refuse_faults
+from mesokit.method.mpcd.engine.embedded.readings import refuse_faults
 from mesokit.scalar.fixed_point import total
 from mesokit.scalar.vector import scaled
 
@@ -137,7 +137,7 @@ def energy_in(memory: Memory, beads: Any, places: Floats) -> float:
     """Potential energy of beads, also of forces from outside and of those on the fluid."""
     energy = float(energy_of(ALONE, beads, memory.box, memory.physics.zero))
     energy += external_energy(beads.external, places)
-    return energy + (energy_in_fluid(memory) if beads.embedded else 0.0)
+    return energy + (memory.energy_in_fluid() if beads.embedded else 0.0)
 
 
 @kernel

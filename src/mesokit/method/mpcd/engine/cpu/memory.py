@@ -28,6 +28,7 @@ from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.cpu.sort import Order
 from mesokit.method.mpcd.engine.embedded.allocate import embedded_of
+from mesokit.method.mpcd.engine.embedded.readings import energy_in_fluid
 from mesokit.method.mpcd.engine.parameters import parameters_of
 from mesokit.method.mpcd.engine.virtual.allocate import virtual_particles
 
@@ -253,6 +254,10 @@ class Memory:
     def stress_terms(self) -> NDArray[np.int64]:
         """Terms of the stress of each strip, kinetic and collisional, at each part of a step."""
         return self.fluid.taken.tensor.swapaxes(0, 1)
+
+    def energy_in_fluid(self) -> float:
+        """Potential energy of all beads and particles of the fluid."""
+        return energy_in_fluid(self)
 
     def taken_by_surfaces(self) -> NDArray[np.int64]:
         """What surfaces took since the last call, as whole numbers."""

@@ -11,9 +11,12 @@ from mesokit.method.mpcd.engine.beads.external import External
 from mesokit.method.mpcd.engine.beads.interactions import SHARED, shared_fault
 from mesokit.method.mpcd.engine.beads.state import Beads, KindsOfLinks
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+from mesokit.method.mpcd.engine.cuda.kernels.beads.embedded import NearBeads, ReachOfBeads
 from mesokit.method.mpcd.engine.cuda.kernels.beads.meetings import Meetings
 from mesokit.method.mpcd.engine.cuda.kernels.beads.solutes import DeviceLists
 from mesokit.method.mpcd.engine.cuda.tables import Tables
+from mesokit.method.mpcd.engine.embedded.state import PARTNERS
 from mesokit.scalar.pointer import WORD
 
 WHOLE = 4  # bytes of an int32 number
@@ -27,9 +30,15 @@ class BeadMemory:
     """
 
     def __init__(
-        self, beads: Beads, cells: int, device: Device, tables: Tables, room: Callable[[int], int]
+        self,
+        beads: Beads,
+        numbers: Numbers,
+        device: Device,
+        tables: Tables,
+        room: Callable[[int], int],
     ) -> None:
         self._device, self._room, self._beads = device, room, beads
+        self._particles, cells = numbers.n, numbers.number_of_cells
         self.number, n = beads.number, beads.number
         potentials: Any = beads.potentials
         self.substeps: int = potentials.substeps
@@ -63,6 +72,7 @@ class BeadMemory:
             external=tuple(External(*map(self._copied, one)) for one in beads.external),
             halo=(),
         )
+        self.near: Any = self._near(tables)
         self.met = Meetings(
             cells=cells,
             count=room((cells + 1) * WHOLE),
@@ -71,6 +81,35 @@ class BeadMemory:
             rank=room(n * WHOLE),
             taken=room(WHOLE),
         )
+
+    def _near(self, tables: Tables) -> NearBeads | None:
+        """Memory for the particles near beads that act by a potential."""
+        for given in self._beads.embedded:
+            room, n, d = self._room, self.number, len(self._beads.r) // self.number
+            most = given.lane.shape[1]
+            return NearBeads(
+                potential=tables.there(given.potential),
+                reach=given.reach,
+                skin=given.skin,
+                travel=given.travel,
+                further=given.further,
+                grid=given.grid,
+                marked=room(given.marked.nbytes),
+                lists=ReachOfBeads(given.lists.reach),
+                most=most,
+                candidates=room(self._particles * WHOLE),
+                waiting=room(WHOLE),
+                particle=room(most * WHOLE),
+                partners=room(most * WHOLE),
+                beads=room(most * PARTNERS * WHOLE),
+                start=room(most * d * WORD),
+                bound=room(most * WORD),
+                number=room(WHOLE),
+                origin=room(n * d * WORD),
+                taken=room(n * d * WORD),
+                faults=room(SHARED * WORD),
+            )
+        return None
 
     def _copied(self, table: Any) -> int:
         """The address of a table of float64 or int32 numbers on the device."""
@@ -108,6 +147,8 @@ class BeadMemory:
         """Bring beads to the device, if they are not as they were there; forget faults."""
         device, beads, group = self._device, self._beads, self.group
         device.clear(group.faults, SHARED * WORD)
+        if self.near is not None:
+            device.clear(self.near.faults, SHARED * WORD)
         if what & MEASURE_STRESS:
             device.clear(group.tensor, beads.tensor.nbytes)
         here = beads.r, beads.v
@@ -115,6 +156,8 @@ class BeadMemory:
             return
         device.write(group.r, beads.r)
         device.write(group.v, beads.v)
+        if self.near is not None:  # the step may be an earlier one
+            device.clear(self.near.marked, self._beads.embedded[0].marked.nbytes)
         if self.lists is not None:  # none holds: all have moved by more than any number
             device.write(self.lists.made_at, np.full(len(beads.r), np.nan))
 
@@ -129,3 +172,6 @@ class BeadMemory:
         noted = np.zeros(SHARED, np.int64)
         device.read(group.faults, noted)
         beads.faults[0, :3] = shared_fault(noted)
+        for embedded in beads.embedded:
+            device.read(self.near.faults, noted)
+            embedded.faults[0, :3] = shared_fault(noted)

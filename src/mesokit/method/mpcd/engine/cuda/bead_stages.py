@@ -27,6 +27,32 @@ from mesokit.scalar.pointer import WORD
 Row = NDArray[np.uint64]
 
 
+class ListStages:
+    """The kernels of neighbour lists; without lists nothing is launched."""
+
+    def __init__(self, memory: BeadMemory, device: Device, made: Callable[..., StepKernel]) -> None:
+        self._memory, self._device = memory, device
+        if memory.lists is not None:
+            beads = memory.group
+            self._stay, self._renew = made(stay_solute, beads, 0), made(renew_list, beads, 0)
+
+    def forget(self) -> None:
+        """No bead has moved yet in this sub-step."""
+        if self._memory.lists is not None:
+            self._device.clear(self._memory.lists.moved, WORD)
+
+    def stay(self, row: Row) -> None:
+        """Before the first sub-step: how far beads have moved since their lists were made."""
+        self.forget()
+        if self._memory.lists is not None:
+            self._stay(self._memory.number, row, 0)
+
+    def renew(self, row: Row, n: int) -> None:
+        """Make lists anew if any bead has moved too far."""
+        if self._memory.lists is not None:
+            self._renew(self._memory.number, row, n)
+
+
 class BeadStages:
     """The kernels of solutes; `made` makes one of a body and what it takes beside the fluid."""
 
@@ -35,8 +61,7 @@ class BeadStages:
         beads, met = memory.group, memory.met
         self._collide = made(collide_solute, beads)
         self._drift, self._kick = made(drift_solute, beads, 0), made(kick_solute, beads, 0)
-        if memory.lists is not None:
-            self._stay, self._renew = made(stay_solute, beads, 0), made(renew_list, beads, 0)
+        self._lists = ListStages(memory, device, made)
         self._bin = made(bin_solute, beads, met)
         self._join, self._answer = made(join_cell, beads, met), made(answer_cell, beads, met)
         given = beads.cell, met
@@ -51,16 +76,14 @@ class BeadStages:
 
     def move(self, row: Row) -> None:
         """Flights and kicks of all beads in sub-steps; their cells at t + dt."""
-        memory, lists = self._memory, self._memory.lists
+        memory = self._memory
         for n in range(memory.substeps + 1):
-            if lists is not None:
-                self._device.clear(lists.moved, WORD)
             if n > 0:
+                self._lists.forget()
                 self._drift(memory.number, row, n)
-            elif lists is not None:
-                self._stay(memory.number, row, n)
-            if lists is not None:
-                self._renew(memory.number, row, n)
+            else:
+                self._lists.stay(row)
+            self._lists.renew(row, n)
             self._kick(memory.number, row, n)
         self._bin(memory.number, row)
 

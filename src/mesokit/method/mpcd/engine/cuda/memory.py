@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.devices.device import BLOCK, Device
+from mesokit.devices.device import BLOCK, Device, words_of
 from mesokit.devices.records import WordByWord, adding
 from mesokit.loops.layout import record_length, sums_length
 from mesokit.method.mpcd.engine.beads.allocate import allocate_beads
@@ -18,12 +18,15 @@ from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
 from mesokit.method.mpcd.engine.cpu.physics import Physics
 from mesokit.method.mpcd.engine.cuda.bead_memory import BeadMemory
+from mesokit.method.mpcd.engine.cuda.kernels.beads.embedded import add_energy
 from mesokit.method.mpcd.engine.cuda.kernels.groups import DeviceFluid, Kinds
 from mesokit.method.mpcd.engine.cuda.kernels.sort import CHUNK
 from mesokit.method.mpcd.engine.cuda.tables import Tables
 from mesokit.method.mpcd.engine.cuda.wall_memory import WallMemory
+from mesokit.method.mpcd.engine.embedded.allocate import embedded_of
 from mesokit.method.mpcd.engine.parameters import parameters_of
 from mesokit.method.mpcd.thermostat.protocol import draw
+from mesokit.scalar.fixed_point import total
 
 REAL, WHOLE = 8, 4  # bytes of a number
 
@@ -58,8 +61,8 @@ class DeviceMemory:
         given = self.numbers.case.solutes
         if given is None:
             return (), None
-        beads = allocate_beads(given, self)
-        return beads, BeadMemory(beads, self.number_of_cells, self.device, self.tables, self.room)
+        beads = allocate_beads(given, self)._replace(embedded=embedded_of(given, self.numbers, 1))
+        return beads, BeadMemory(beads, self.numbers, self.device, self.tables, self.room)
 
     @property
     def plain(self) -> tuple[Physics, DeviceFluid]:
@@ -232,6 +235,18 @@ class DeviceMemory:
     def numbers_taken(self) -> int:
         """How many numbers `taken_by_surfaces` gives."""
         return self.surfaces * self.of_surface
+
+    def energy_in_fluid(self) -> float:
+        """Potential energy of all beads that act by a potential and particles of the fluid."""
+        assert self.beads is not None
+        rows, scale = -(-self.n // BLOCK), self.numbers.units["energy"]
+        physics, fluid = self.plain
+        found, address = np.zeros((rows, 1), np.int64), self.room(rows * REAL)
+        given = physics, self.box, fluid, self.beads.group, self.beads.near, scale, address
+        self.device.launch(self.device.kernel(add_energy, given), words_of(self.n, *given))
+        self.device.read(address, found)
+        self.give_back(address, rows * REAL)
+        return float(total(found, scale)[0])
 
     def clear_stress(self) -> None:
         """Set the terms of the stress to 0."""

@@ -9,8 +9,3 @@ def refused(case: Case, ranks: int = 1) -> Iterator[str]:
     """A line, key first, for each thing in a case that devices cannot do."""
     if ranks > 1:
         yield f"device: not on {ranks} ranks yet; expected one rank, or --device cpu"
-    if case.solutes is not None and case.solutes.coupling == "potential":
-        yield (
-            "solutes.coupling = 'potential': not on a device yet; expected 'collision', or "
-            "--device cpu"
-        )

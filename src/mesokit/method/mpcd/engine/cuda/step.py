@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from mesokit.devices.device import words_of
 from mesokit.method.mpcd.engine.cpu.groups import Course
 from mesokit.method.mpcd.engine.cuda.bead_stages import BeadStages
+from mesokit.method.mpcd.engine.cuda.embedded_stages import EmbeddedStages
+from mesokit.method.mpcd.engine.cuda.kernels.beads.embedded import sweep_in_fluid
 from mesokit.method.mpcd.engine.cuda.kernels.beads.molecules import sweep_molecule
 from mesokit.method.mpcd.engine.cuda.kernels.cells import (
     collide_cell,
@@ -33,7 +35,7 @@ class Steps:
         self.plan = Plan(memory.physics, memory.physics_there, course)
         physics = memory.physics_there._replace(field=self.plan.field)
         of_cells = physics._replace(field=(), solid=(), molecule=())
-        self._sweep = self._of_step(self._body(), physics, memory.fluid)
+        self._sweep = self._of_step(*self._body(physics))
         self._collide = self._of_step(collide_cell, of_cells, memory.fluid)
         single = memory.numbers.beads == 1
         self.among_solids = memory.numbers.solids is not None and single
@@ -47,21 +49,30 @@ class Steps:
                 return self._of_step(body, of_walls, *given)
 
             self._walls = WallStages(memory, memory.walls, made, FEW)
-        self._beads = None
+        self._beads = self._around = None
         if memory.beads is not None:
 
             def of_beads(body: Any, *given: Any) -> StepKernel:
                 return self._of_step(body, physics, memory.fluid, *given)
 
-            self._beads = BeadStages(memory.beads, self.device, of_beads)
+            if memory.beads.near is None:
+                self._beads = BeadStages(memory.beads, self.device, of_beads)
+            else:
+                self._around = EmbeddedStages(memory.beads, self.device, of_beads, FEW)
         if memory.has_doubts:
             self._doubt = self._of_step(collide_doubtful, of_cells, memory.fluid, FEW)
         if memory.fluid.neighbour_sums:
             self._sums = words_of(memory.number_of_cells, of_cells, memory.fluid)
             self._fill = self.device.kernel(fill_neighbour_sum, (of_cells, memory.fluid))
 
-    def _body(self) -> Any:
-        return sweep_molecule if self.memory.numbers.case.fluid.molecule else sweep
+    def _body(self, physics: Any) -> tuple[Any, ...]:
+        """What sweeps over particles, and what it takes."""
+        memory = self.memory
+        if memory.numbers.case.fluid.molecule:
+            return sweep_molecule, physics, memory.fluid
+        if memory.beads is not None and memory.beads.near is not None:
+            return sweep_in_fluid, physics, memory.fluid, memory.beads.near
+        return sweep, physics, memory.fluid
 
     def _of_step(self, body: Any, physics: Any, *more: Any) -> StepKernel:
         made = StepKernel(self.device, body, physics, self.plan, *more)
@@ -89,9 +100,15 @@ class Steps:
         memory = self.memory
         if self.among_solids:
             self.device.clear(memory.fluid.waiting, WHOLE)
+        if self._around is not None:
+            self._around.mark(row)  # cells around beads that act by a potential
         self._sweep(memory.fluid.molecules, row)  # v: the collision at t; r, v: t -> t + dt; sums
+        if self._around is not None:
+            self._around.choose(row)  # the same for those near marks that no bead can reach
         if self.among_solids:
             self._bounce(FEW, row)  # the same for those that may meet a surface
+        if self._around is not None:
+            self._around.move(row)  # r, v of beads and of those near them: t -> t + dt
         if self._beads is not None:
             self._beads.collide(row)  # v: the collision at t
             self._beads.move(row)  # r, v: t -> t + dt, in sub-steps

@@ -124,6 +124,20 @@ def _(moving, step, box, physics, time):
 
 
 @scalar
+def pull_of(embedded, beads, box, r, j):
+    """From bead j to a particle at r, and the force on the particle over their distance."""
+    separation = apart(box, state.load_place(beads, j, r), r)
+    _, force_over_r = central(embedded.potential, dot(separation, separation))
+    return separation, force_over_r
+
+
+@scalar
+def is_too_hard(impulse, scale):
+    """Whether a particle would hand over more at once than whole numbers can hold."""
+    return not dot(impulse, impulse) * scale * scale < MOST_UNITS * MOST_UNITS
+
+
+@scalar
 def kick_particle(moving, n, step, box, physics, time):
     """Change of the velocity of one particle by the beads near it, which take the opposite."""
     embedded, thread, zero = moving.embedded, moving.solutes.worker.thread, physics.zero
@@ -134,14 +148,13 @@ def kick_particle(moving, n, step, box, physics, time):
     # of the potential add nothing, so both give the same bits.
     for k in range(count if count != ALL_BEADS else len(beads.cell)):
         j = embedded.beads[thread, n * PARTNERS + k] if count != ALL_BEADS else k
-        separation = apart(box, state.load_place(beads, j, r), r)
-        square = dot(separation, separation)
-        _, force_over_r = central(embedded.potential, square)
+        separation, force_over_r = pull_of(embedded, beads, box, r, j)
         if force_over_r != 0.0:
-            if not abs(force_over_r) * time * scale * square**0.5 < MOST_UNITS:
+            impulse = scaled(time * force_over_r, separation)
+            if is_too_hard(impulse, scale):
                 note(embedded.faults[thread], step, TOO_HARD, j + 1)
             else:
-                units = added_quanta(scaled(time * force_over_r, separation), scale, integers(zero))
+                units = added_quanta(impulse, scale, integers(zero))
                 given = added(given, units)
                 add_integers(embedded.taken[thread, j * d : (j + 1) * d], opposite(units))
     m = mass_in_lane(physics, moving.particles, embedded.lane[thread, n])

@@ -30,7 +30,8 @@ from mesokit.method.mpcd.engine.embedded.state import (
 )
 from mesokit.method.mpcd.streaming import halfway, vector
 from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.pointer import is_address, raise_to
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 
@@ -72,7 +73,19 @@ def mark_around(embedded, r, stamp):
                     gap = max(abs(middle[k] - r[k]) - 0.5, 0.0)
                     square += gap * gap
                 if square <= reach * reach:
-                    embedded.marked[cell_index(middle, embedded.grid)] = stamp
+                    put_mark(embedded.marked, np.int64(cell_index(middle, embedded.grid)), stamp)
+
+
+@by_type
+def put_mark(marked, cell, stamp):
+    """Mark a cell; on a device, where all threads do so at once, stamps only rise."""
+    if is_address(marked):
+        return lambda marked, cell, stamp: raise_to(marked, cell, np.int64(stamp))
+    return _put_mark
+
+
+def _put_mark(marked, cell, stamp):
+    marked[cell] = stamp
 
 
 @scalar
@@ -84,6 +97,13 @@ def path_of(embedded, physics, r, v):
 
 
 @scalar
+def may_be_near(embedded, physics, mark, step, r, v):
+    """Whether a particle is in a cell that is marked for this step, or so fast that cells are no
+    bound."""
+    return (mark == step) | (not path_of(embedded, physics, r, v) <= embedded.travel)
+
+
+@scalar
 def choose_near(worker, now, physics, beads, strip, s, count, marks):
     """Put the particles of strip s that may come near a bead on the list of this thread.
 
@@ -91,13 +111,11 @@ def choose_near(worker, now, physics, beads, strip, s, count, marks):
     """
     (embedded,), zero = beads.embedded, physics.zero
     d, step, candidates, chosen = len(zero), now.counter.step, 0, 0
-    # Coarse test of all lanes at t, before the flight: in a marked cell, or so fast that cells are
-    # no bound. It has no branches.
+    # Coarse test of all lanes at t, before the flight. It has no branches.
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        near = embedded.marked[cell_index(r, embedded.grid)] == step
-        fast = not path_of(embedded, physics, r, v) <= embedded.travel
-        marks[i] = np.int64(near) | np.int64(fast)
+        mark = embedded.marked[cell_index(r, embedded.grid)]
+        marks[i] = np.int64(may_be_near(embedded, physics, mark, step, r, v))
     # Compact the lanes of candidates to the front, again without branches.
     for i in range(count):
         mark = marks[i]

@@ -1,5 +1,7 @@
 """The energy of solutes in the fluid that they act on, and the faults of their sub-steps."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +13,6 @@ from mesokit.method.mpcd.engine.beads.interactions import first_fault
 from mesokit.method.mpcd.engine.beads.neighbours import apart
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
-from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
 from mesokit.method.mpcd.engine.embedded.near import find_beads
 from mesokit.method.mpcd.engine.embedded.state import TOO_FAR, TOO_HARD
@@ -23,7 +24,7 @@ from mesokit.scalar.vector import dot
 MOST = 2.0**60  # units of energy of one pair: of particles that overlap it is not exact
 
 
-def energy_in_fluid(memory: Memory) -> float:
+def energy_in_fluid(memory: Any) -> float:
     """Potential energy of all beads and particles of the fluid."""
     scale, sums = memory.numbers.units["energy"], np.zeros((memory.strips, 1), np.int64)
     alone = Worker(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))

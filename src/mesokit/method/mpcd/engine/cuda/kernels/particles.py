@@ -34,37 +34,39 @@ from mesokit.scalar.jit import by_type, optional, scalar
 from mesokit.scalar.pointer import add_words, put_whole, reals, short, take_number, whole
 
 
-@by_type
+@scalar
 def sweep(i, physics, now, fluid):
-    """The pending collision, the flight, and what the particle brings to its next cell.
+    """The pending collision, the flight, and what the particle brings to its next cell."""
+    r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
+    v = collide_particle(i, physics, now, fluid, r, v)
+    if now.flags & STREAM:
+        v = stream_particle(i, physics, now, fluid, r, v)
+    to_rows(fluid.v, i, v)
+
+
+@by_type
+def stream_particle(i, physics, now, fluid, r, v):
+    """The flight of a particle into its next cell; the velocity that it keeps.
 
     Among solids a particle that may meet one is only put on a list: its flight has code of its own
     (`bounce_listed`), which would take registers from all others here.
     """
-    return _sweep_among if has_solid(physics) else _sweep_freely
+    return _stream_among if has_solid(physics) else _stream_freely
 
 
-def _sweep_freely(i, physics, now, fluid):
-    r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
-    v = collide_particle(i, physics, now, fluid, r, v)
-    if now.flags & STREAM:
-        r, v = fall(r, v, halfway(physics.field, r, v, physics.timestep), physics.timestep)
-        v = bring(i, physics, now, fluid, r, v)
-    to_rows(fluid.v, i, v)
+def _stream_freely(i, physics, now, fluid, r, v):
+    r, v = fall(r, v, halfway(physics.field, r, v, physics.timestep), physics.timestep)
+    return bring(i, physics, now, fluid, r, v)
 
 
-def _sweep_among(i, physics, now, fluid):
-    r, v = from_rows(fluid.r, i, physics.zero), from_rows(fluid.v, i, physics.zero)
-    v = collide_particle(i, physics, now, fluid, r, v)
-    if now.flags & STREAM:
-        a = halfway(physics.field, r, v, physics.timestep)
-        clear = around(physics.solid, r)
-        if touches(physics.solid, clear, r, v, vector(a, r), physics.timestep):
-            put_whole(fluid.listed, take_number(fluid.waiting, 0, 1), i)
-        else:
-            r, v = fall(r, v, a, physics.timestep)
-            v = bring(i, physics, now, fluid, r, v)
-    to_rows(fluid.v, i, v)
+def _stream_among(i, physics, now, fluid, r, v):
+    a = halfway(physics.field, r, v, physics.timestep)
+    clear = around(physics.solid, r)
+    if touches(physics.solid, clear, r, v, vector(a, r), physics.timestep):
+        put_whole(fluid.listed, take_number(fluid.waiting, 0, 1), i)
+        return v
+    r, v = fall(r, v, a, physics.timestep)
+    return bring(i, physics, now, fluid, r, v)
 
 
 @scalar
