@@ -129,6 +129,7 @@ IN_SLIT = {
 AROUND = {
     "in a slit": IN_SLIT,
     "in a box": {"size": (20, 20), "density": 5, "solutes": EMBEDDED, **HELD},
+    "in a box in 3D": {"size": (12, 11, 10), "density": 5, "solutes": EMBEDDED, **HELD},
     "in a mixture": {
         "size": (20, 20), "solutes": EMBEDDED, **HELD,
         "species": (Species(mass=1, density=3), Species(mass=2, density=2)),

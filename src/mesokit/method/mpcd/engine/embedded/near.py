@@ -56,14 +56,14 @@ def mark_around(embedded, r, stamp):
     for k in range(d):
         low = with_item(low, k, floor(r[k] - reach))
         high = with_item(high, k, floor(r[k] + reach))
-    depth = int(high[2] - low[2]) + 1 if d == 3 else 1
+    depth = int(high[d - 1] - low[d - 1]) + 1 if d == 3 else 1  # along z
     middle = r
     # All cells of side a in a cube around the bead, but only those nearer than `reach`. Threads may
     # mark the same cell, but all write the same stamp, the number of the step. So marks need no
     # clearing.
     for c in range(depth):
         if d == 3:
-            middle = with_item(middle, 2, low[2] + c + 0.5)
+            middle = with_item(middle, d - 1, low[d - 1] + c + 0.5)
         for b in range(int(high[1] - low[1]) + 1):
             middle = with_item(middle, 1, low[1] + b + 0.5)
             for a in range(int(high[0] - low[0]) + 1):
