@@ -96,7 +96,7 @@ ROWS = {
         "case", "devices", "errors", "io", "observe.shared", "processes", "report", "run", "seam",
     ),
     "run/loop.py": ("case", "kernels.kept", "processes", "report", "run", "seam"),
-    "run/warm.py": ("case", "kernels", "run"),
+    "run/warm.py": ("case", "devices.names", "kernels", "run"),
     "study/": (
         "case", "devices.named", "devices.names", "errors", "io", "observe.shared", "processes",
         "report", "run", "seam", "statistics", "study",
@@ -105,7 +105,9 @@ ROWS = {
         "case", "cli", "devices.named", "devices.names", "errors", "io", "processes", "report",
         "run", "seam", "study",
     ),
-    "cli/compiled.py": ("case", "cli", "errors", "kernels", "processes", "run.warm"),
+    "cli/compiled.py": (
+        "case", "cli", "devices.names", "errors", "kernels", "processes", "run.warm",
+    ),
     "cli/theory.py": ("case", "cli", "errors", "method.mpcd", "theory"),
 }  # fmt: skip
 for _place, _row in ROWS.items():  # what is written as scalar functions is compiled

@@ -302,7 +302,9 @@ def test_a_second_card_that_is_not_there_is_an_error() -> None:
         Cuda(1, FakeDriver())
 
 
-@pytest.mark.parametrize("name", ["gpu", "cud", "cuda:x", "host:1", "", None, 3])
+@pytest.mark.parametrize(
+    "name", ["gpu", "cud", "cuda:x", "host:1", "emulated:9", "cpu:0", "", None, 3]
+)
 def test_a_device_of_another_name_is_an_error(name) -> None:
     with pytest.raises(
         CaseError, match=r"device = .*: expected 'cpu', 'cuda', 'emulated' or 'host'"

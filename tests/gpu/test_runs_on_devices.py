@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+import zipfile
 
 import pytest
 
@@ -102,6 +103,19 @@ def test_what_a_device_takes_is_known_without_a_card(case, tmp_path) -> None:
 def test_the_memory_that_is_told_is_what_an_engine_takes(walls) -> None:
     engine = CUDA(make_case((20, 21, 22), density=10, walls=walls), Host())
     assert memory_of(engine.numbers) == pytest.approx(engine.memory.bytes_held, rel=0.02)
+
+
+@pytest.mark.long
+def test_kernels_of_a_card_are_compiled_ahead(case, tmp_path, monkeypatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    given = "--set", "run.steps=8", "--set", "box.size=[4, 4, 4]"
+    status, out, said = mesokit(tmp_path, "warm", case.name, "--chip", "8.0", *given)
+    assert (status, said) == (0, "")
+    assert "case.toml: " in out
+    kept = list((tmp_path / "cache").rglob("cuda/*.zip"))
+    texts = [zipfile.ZipFile(file).read("kernel.ptx").decode() for file in kept]
+    assert len(texts) > 5
+    assert all(".target sm_80" in text for text in texts)
 
 
 def test_methods_without_kernels_are_refused(tmp_path) -> None:

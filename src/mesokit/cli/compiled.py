@@ -8,6 +8,7 @@ import click
 from mesokit.cli.commands import CASE, FILE, SET, cli
 from mesokit.cli.together import on_ranks
 from mesokit.cli.words import say, show_table
+from mesokit.devices.names import CPU
 from mesokit.errors import CaseError, MesokitError, RunError
 
 
@@ -16,15 +17,26 @@ from mesokit.errors import CaseError, MesokitError, RunError
 @SET
 @click.option("--all", "every", is_flag=True, help="All templates and examples of all methods.")
 @click.option("--why", is_flag=True, help="Say why each kernel was compiled.")
+@click.option(
+    "--chip",
+    metavar="N.N",
+    help="Kernels of a card of this compute capability, such as 9.0; none is needed.",
+)
 @click.option("--quiet", is_flag=True, help="Errors only.")
 @on_ranks(lambda given: Path("warm"))
 def warm(
-    cases: Sequence[Path], settings: dict[str, str], every: bool, why: bool, quiet: bool
+    cases: Sequence[Path],
+    settings: dict[str, str],
+    every: bool,
+    why: bool,
+    chip: str | None,
+    quiet: bool,
 ) -> None:
     """Compile what each CASE runs and keep it, so that the first run starts at once.
 
     A few steps of each case are run, and nothing is written but compiled code. Use it once in a
-    container, or before many jobs of a cluster start; with --ranks for runs on several ranks.
+    container, or before many jobs of a cluster start; with --ranks for runs on several ranks. With
+    --chip, kernels of cards are compiled too, on a machine without one.
     """
     if bool(cases) == every:
         raise CaseError("warm: expected cases, or --all")
@@ -32,10 +44,11 @@ def warm(
     from mesokit.processes.world import world
     from mesokit.run.warm import warm as compile_all
 
+    device = CPU if chip is None else f"emulated:{chip}"
     known = {**templates(), **examples()} if every else {str(case): case for case in cases}
     for name, case in known.items():
         try:
-            made = compile_all(Path(str(case)), settings, why)
+            made = compile_all(Path(str(case)), settings, why, device)
         except MesokitError as error:
             if not every:
                 raise

@@ -1,5 +1,6 @@
 """Devices by the names that users give them."""
 
+import re
 from typing import Any
 
 from mesokit.case.component import nearest, one_of, show
@@ -7,11 +8,14 @@ from mesokit.devices.device import Device
 from mesokit.devices.names import NAMES
 from mesokit.errors import CaseError
 
+MORE = {"cuda": r"\d{1,3}", "emulated": r"\d{1,2}\.\d"}  # after a colon
+
 
 def require_name(given: Any) -> str:
-    """The name of a device; "cuda:1" is the second card. Raises CaseError for another."""
-    name, _, number = given.partition(":") if isinstance(given, str) else ("", "", "")
-    if name in NAMES and (not number or (name == "cuda" and number.isdigit())):
+    """The name of a device; "cuda:1" is the second card, "emulated:8.0" is of that compute
+    capability. Raises CaseError for another."""
+    name, _, more = given.partition(":") if isinstance(given, str) else ("", "", "")
+    if name in NAMES and (not more or re.fullmatch(MORE.get(name, "-"), more)):
         return str(given)
     hint = nearest(given, NAMES) if isinstance(given, str) else ""
     raise CaseError(f"device = {show(given)}: expected {one_of(NAMES)}{hint}")
@@ -26,15 +30,16 @@ def opened(given: Any) -> Device | None:
 
     Raises CaseError for another name, and RunError where there is no such device.
     """
-    name, _, number = require_name(given).partition(":")
+    name, _, more = require_name(given).partition(":")
     if name == "cuda":
         from mesokit.devices.cuda import Cuda
 
-        return Cuda(int(number or 0))
+        return Cuda(int(more or 0))
     if name == "emulated":
-        from mesokit.devices.emulated import Emulated
+        from mesokit.devices.emulated import CHIP, Emulated
 
-        return Emulated()
+        major, _, minor = more.partition(".")
+        return Emulated((int(major), int(minor)) if more else CHIP)
     if name == "host":
         from mesokit.devices.host import Host
 

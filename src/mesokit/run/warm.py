@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mesokit.case.case import Case
+from mesokit.devices.names import CPU
 from mesokit.kernels.kept import counts
 from mesokit.run.simulation import Simulation
 
@@ -36,14 +37,16 @@ def shortened(path: Path, settings: dict[str, str], steps: int = STEPS) -> Case:
     return Case.from_toml(path, settings | {"run.steps": steps, "run.warmup": 0} | every)
 
 
-def warm(path: Path, settings: dict[str, str], why: bool = False) -> Warmed:
+def warm(path: Path, settings: dict[str, str], why: bool = False, device: str = CPU) -> Warmed:
     """Run a few steps of the case in a file, so that its compiled code is kept; `why` adds reasons.
+
+    Kernels of an emulated device are kept as those of the card that it stands for.
 
     Raises MesokitError.
     """
     began, kernels, parts = time.perf_counter(), counts.kernels_made, counts.parts_made
     counts.reasons.clear()
     counts.explains = why
-    Simulation(shortened(path, settings), threads=1).run(progress=False)
+    Simulation(shortened(path, settings), threads=1, device=device).run(progress=False)
     made = counts.kernels_made - kernels, counts.parts_made - parts
     return Warmed(*made, time.perf_counter() - began, dict(counts.reasons))
