@@ -120,6 +120,20 @@ def test_a_device_does_what_it_is_asked(make) -> None:
     assert getattr(device, "faults", {}) == {}
 
 
+def test_two_devices_of_one_process_have_memory_of_their_own() -> None:
+    one, other = Checked(), Checked()
+    first, second = ((device, device.allocate(8 * THREADS)) for device in (one, other))
+    for device, place in (first, second):
+        device.clear(place, 8 * THREADS)
+    kernels = [device.kernel(same_place, (place,)) for device, place in (first, second)]
+    one.launch(kernels[0], words_of(8, first[1]))
+    found = np.zeros(THREADS, np.int64)
+    other.read(second[1], found)
+    assert not found.any()
+    one.read(first[1], found)
+    assert 0 < found[0] < 8
+
+
 # --- the checker ---------------------------------------------------------------------------------
 
 

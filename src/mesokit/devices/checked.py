@@ -137,9 +137,6 @@ class Checked(Emulated):
         """The machine code of a body, for arguments of these types."""
         library = super().kernel(body, given)
         if id(library) not in self._names:
-            arrays: tuple[Any, ...] = self._arena, self._state, *self._noted
-            arena, state, *noted = (ctypes.c_void_p(array.ctypes.data) for array in arrays)
-            library.memory_is(arena, ctypes.c_uint64(self._arena.size), state, *noted)
             library.faults_are.restype = ctypes.POINTER(ctypes.c_int64)
             source = getattr(body, "__wrapped__", body)
             self._names[id(library)] = f"{source.__name__} {len(self._names)}"
@@ -148,6 +145,10 @@ class Checked(Emulated):
     def launch(self, kernel: Any, words: NDArray[np.uint64]) -> None:
         """Run as many threads as the first word says, and note what they must not do."""
         self._launches += 1
+        # Each time: another device of this process may have the same machine code.
+        arrays: tuple[Any, ...] = self._arena, self._state, *self._noted
+        arena, state, *noted = (ctypes.c_void_p(array.ctypes.data) for array in arrays)
+        kernel.memory_is(arena, ctypes.c_uint64(self._arena.size), state, *noted)
         kernel.launch_is(ctypes.c_int64(self._launches))
         super().launch(kernel, words)
         found = kernel.faults_are()
