@@ -9,7 +9,7 @@ import pytest
 from benchmarks.gpu_kernels import CASES, CHIPS, kernels_of, needs
 from mesokit.devices.cubins import made
 
-QUICK = ("3D SRD, thermostat", "3D sphere, thermostat")
+QUICK = ("3D SRD, thermostat",)
 # Registers of a thread: with 64 a multiprocessor has 1024 threads, with 104 half of these.
 MOST = {"sweep": 64, "collide_cell": 64}
 MOST_WITH_ANGULAR_MOMENTUM = {"sweep": 104, "collide_cell": 100}

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import subprocess
 import zipfile
 
 import pytest
 
-from mesokit import Plates, Simulation
+from mesokit import Disk, Plates, Simulation
 from mesokit.devices.host import Host
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.engine.cuda.cost import memory_of
@@ -118,6 +119,15 @@ def test_kernels_of_a_card_are_compiled_ahead(case, tmp_path, monkeypatch) -> No
     assert all(".target sm_80" in text for text in texts)
 
 
+def test_memory_of_a_device_is_given_back_with_the_engine() -> None:
+    device = Host()
+    engine = CUDA(make_case((9, 8), walls=(Disk(centre=(4, 4), radius=2),)), device)
+    assert len(device._held) > 20
+    del engine
+    gc.collect()
+    assert device._held == {}
+
+
 def test_methods_without_kernels_are_refused(tmp_path) -> None:
     file = tmp_path / "birds.toml"
     file.write_text('[run]\nmethod = "flock"\nsteps = 1\n[box]\nsize = [8, 8]\n')
@@ -125,6 +135,7 @@ def test_methods_without_kernels_are_refused(tmp_path) -> None:
         Simulation(file, device="host")
 
 
+@pytest.mark.long
 def test_replicas_on_a_device_are_those_of_the_processor(case, tmp_path) -> None:
     case.write_text(CASE.format(steps="9\nreplicas = 2"))
     for device in ("cpu", "host"):

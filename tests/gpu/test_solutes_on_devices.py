@@ -138,16 +138,11 @@ AROUND = {
         "size": (20, 20), "walls": [Disk(centre=(10, 10), radius=3, virtual="none")],
     },
 }  # fmt: skip
-FIRST = "in a slit"
-AROUND_ROWS = [pytest.param(FIRST, HOST)] + [
-    pytest.param(name, device, marks=pytest.mark.long)
-    for name in AROUND
-    for device in (HOST, CHECKED)
-    if (name, device) != (FIRST, HOST)
-]
 
 
-@pytest.mark.parametrize(("name", "device"), AROUND_ROWS)
+@pytest.mark.long
+@pytest.mark.parametrize("device", [HOST, CHECKED], ids=["host", "checked"])
+@pytest.mark.parametrize("name", AROUND)
 def test_solutes_that_act_by_a_potential_have_the_same_bits(name, device) -> None:
     both = pair(device, ("walls",), **AROUND[name])
     for steps in (12, 18):
@@ -159,6 +154,7 @@ def test_solutes_that_act_by_a_potential_have_the_same_bits(name, device) -> Non
     assert getattr(device, "faults", {}) == {}
 
 
+@pytest.mark.long
 def test_a_bead_that_goes_too_far_is_named_as_on_the_processor() -> None:
     both = pair(HOST, ("walls",), **IN_SLIT)
     fast = both.cpu.state()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Sequence
 from typing import Any
 
@@ -44,7 +45,9 @@ class DeviceMemory:
         self.measures = frozenset(measures)
         self._parameters = parameters_of(numbers)
         self.physics = self._parameters.physics
-        self.tables = Tables(device)
+        self._held: set[int] = set()  # addresses, which are given back with this memory
+        weakref.finalize(self, _give_back_all, device, self._held).atexit = False
+        self.tables = Tables(device, self._held)
         self.physics_there = self.tables.there(self.physics)
         self.n, self.number_of_cells = numbers.n, numbers.number_of_cells
         self.bytes_held = 0
@@ -84,12 +87,14 @@ class DeviceMemory:
         """The address of so many bytes, set to 0."""
         size = max(size, REAL)
         address = self.device.allocate(size)
+        self._held.add(address)
         self.device.clear(address, size)
         self.bytes_held += size
         return address
 
     def give_back(self, address: int, size: int) -> None:
         """Free what `room` gave for so many bytes."""
+        self._held.discard(address)
         self.device.free(address)
         self.bytes_held -= max(size, REAL)
 
@@ -282,3 +287,8 @@ class DeviceMemory:
     def forget_surfaces(self) -> None:
         """Count anew what surfaces take."""
         self.device.clear(self.fluid.impulse, self.surfaces * self.of_surface * REAL)
+
+
+def _give_back_all(device: Device, held: set[int]) -> None:
+    for address in held:
+        device.free(address)

@@ -14,10 +14,10 @@ from mesokit.scalar.pointer import table_at
 
 
 class Tables:
-    """Copies of tables on a device, by their addresses here."""
+    """Copies of tables on a device, by their addresses here; `held` has those of all copies."""
 
-    def __init__(self, device: Device) -> None:
-        self._device = device
+    def __init__(self, device: Device, held: set[int]) -> None:
+        self._device, self._addresses = device, held
         self._there: dict[int, int] = {}
         self._held: list[NDArray[Any]] = []  # no other table can come to their addresses
         self.bytes_held = 0
@@ -39,6 +39,7 @@ class Tables:
             places = [self.there(place) for place in table.ravel().tolist()]
             table = np.array(places, np.int64)
         address = self._device.allocate(table.nbytes)
+        self._addresses.add(address)
         self._device.write(address, table)
         self.bytes_held += table.nbytes
         return address
