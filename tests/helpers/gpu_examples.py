@@ -22,6 +22,8 @@ from mesokit import (
 from mesokit.case import box as boxes
 from mesokit.case.box import Box
 from mesokit.case.shear import protocol as histories
+from mesokit.devices import records
+from mesokit.devices.records import AtOnce, WordByWord
 from mesokit.geometry import protocol
 from mesokit.geometry import protocol as solids
 from mesokit.geometry.protocol import Nothing
@@ -138,6 +140,7 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     boxes.unfold: lambda p, d: (vec(d), vec(d), vec(d)),
     boxes.slide: lambda p, d: (vec(d), vec(d), vec(d)),
     boxes.peculiar: lambda p, d: (vec(d), vec(d)),
+    records.add_record: lambda p, d: (WHOLE, WHOLE, (WHOLE,) * 4),
     cell_energy.energy_term: lambda p, d: (1.0, vec(d)),
     cell_energy.tally: lambda p, d: (1.0, vec(d)),
     cell_energy.untangled: lambda p, d: (WHOLE,),
@@ -227,6 +230,7 @@ def parts(d: int) -> Iterator[Any]:
         yield Box(size, shear=history).kernel(shut)
     yield from (Plates(axis).kernel(size) for axis in Box(size).axes)
     yield Nothing()
+    yield from (WordByWord(), AtOnce())
     yield bodies(d)
     yield from ENERGIES
     faults, tensor = np.zeros(8, np.int64), np.zeros(d * d, np.int64)
