@@ -151,7 +151,9 @@ def note_broken(faults, step, one, other):
     """
     from numba import types
 
-    return note_for_all if isinstance(faults, types.Integer) else _note_own
+    if isinstance(faults, types.Integer):
+        return lambda faults, step, one, other: note_for_all(faults, step, one, other)
+    return _note_own
 
 
 def _note_own(faults, step, one, other):
