@@ -117,7 +117,7 @@ def test_walls_have_the_same_bits(devices, device, kind) -> None:
     assert getattr(devices(device), "faults", {}) == {}
 
 
-def test_walls_that_nobody_measures_have_the_same_bits(devices) -> None:
+def test_walls_without_measurements_have_the_same_bits(devices) -> None:
     both = pair(devices("host"), **KINDS["2D moving plates"])
     both.advance(STEPS)
     both.require_same()

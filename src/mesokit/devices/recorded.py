@@ -1,7 +1,7 @@
 """Tapes: all that a device was asked to do, kept to be done again by another one.
 
-A tape is made on a machine without a card and played on one that has it. There it needs numpy and
-the driver's bindings alone: no compiler, and no fluid. It holds hashes of what must come out.
+A tape is made on a machine without a card and played on one that has it. There it needs mesokit,
+numpy and the driver's bindings: no compiler, and no fluid. It holds hashes of what must come out.
 """
 
 import hashlib
@@ -111,7 +111,7 @@ class Recorded:
         self.behind.wait()
 
     def save(self, file: Path, **about: Any) -> None:
-        """Write the tape, with what it is about: words for those who play it."""
+        """Write the tape, with words about it."""
         with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as parts:
             table = {"about": about, "chip": self.chip, "events": self._events}
             parts.writestr("tape.json", json.dumps(table))

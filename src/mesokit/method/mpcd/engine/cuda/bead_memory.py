@@ -15,7 +15,7 @@ from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.cuda.kernels.beads.embedded import NearBeads, ReachOfBeads
 from mesokit.method.mpcd.engine.cuda.kernels.beads.meetings import Meetings
 from mesokit.method.mpcd.engine.cuda.kernels.beads.solutes import DeviceLists
-from mesokit.method.mpcd.engine.cuda.tables import Tables
+from mesokit.method.mpcd.engine.cuda.tables import Tables, copied
 from mesokit.method.mpcd.engine.embedded.state import PARTNERS
 from mesokit.scalar.pointer import WORD
 
@@ -113,13 +113,7 @@ class BeadMemory:
 
     def _copied(self, table: Any) -> int:
         """The address of a table of float64 or int32 numbers on the device."""
-        table = np.asarray(table)
-        kind = np.float64 if table.dtype.kind == "f" else np.int32
-        values: NDArray[Any] = np.ascontiguousarray(table, kind)
-        address = self._room(values.nbytes)
-        if values.size:
-            self._device.write(address, values)
-        return address
+        return copied(self._device, self._room, table, np.int32)
 
     def _kinds(self, kinds: Any) -> KindsOfLinks | tuple[()]:
         if not kinds:

@@ -4,6 +4,7 @@ Parameters have addresses of tables (see `scalar.pointer`), and some tables have
 others. Each is copied once, and its address replaced wherever it stands.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,19 @@ from numpy.typing import NDArray
 
 from mesokit.devices.device import Device
 from mesokit.scalar.pointer import table_at
+
+
+def copied(device: Device, room: Callable[[int], int], table: Any, whole: Any) -> int:
+    """The address of a copy of a table on a device: float64 numbers, or whole ones of this kind.
+
+    `room` gives addresses of so many bytes.
+    """
+    table = np.asarray(table)
+    values = np.ascontiguousarray(table, np.float64 if table.dtype.kind == "f" else whole)
+    address = room(values.nbytes)
+    if values.size:
+        device.write(address, values)
+    return address
 
 
 class Tables:

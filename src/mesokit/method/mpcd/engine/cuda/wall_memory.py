@@ -4,13 +4,13 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.devices.device import Device
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
 from mesokit.method.mpcd.engine.cuda.kernels.groups import DeviceWalls, Planes
 from mesokit.method.mpcd.engine.cuda.kernels.one_by_one import record_of_particle
 from mesokit.method.mpcd.engine.cuda.kernels.virtual import record_of_cell
+from mesokit.method.mpcd.engine.cuda.tables import copied
 from mesokit.method.mpcd.engine.virtual.allocate import most_particles, tables_of
 from mesokit.method.mpcd.engine.virtual.gradient import EVERY
 from mesokit.scalar.pointer import WORD
@@ -56,13 +56,7 @@ class WallMemory:
 
     def _copied(self, table: Any) -> int:
         """The address of a table of float64 or int64 numbers on the device."""
-        table = np.asarray(table)
-        kind = np.float64 if table.dtype.kind == "f" else np.int64
-        values: NDArray[Any] = np.ascontiguousarray(table, kind)
-        address = self._room(values.nbytes)
-        if values.size:
-            self._device.write(address, values)
-        return address
+        return copied(self._device, self._room, table, np.int64)
 
     @property
     def rates(self) -> Floats:

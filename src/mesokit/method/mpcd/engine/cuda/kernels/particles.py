@@ -25,11 +25,10 @@ from mesokit.method.mpcd.engine.cuda.kernels.rows import (
     from_rows,
     mass_of_number,
     to_rows,
-    uniform_scales,
     whole_numbers,
 )
 from mesokit.method.mpcd.streaming import fall, halfway, vector
-from mesokit.scalar.fixed_point import rounded
+from mesokit.scalar.fixed_point import added_fixed, integers
 from mesokit.scalar.jit import by_type, optional, scalar
 from mesokit.scalar.pointer import add_words, put_whole, reals, short, take_number, whole
 
@@ -139,7 +138,7 @@ def add_stress(i, physics, now, grid, fluid, part, r, v):
         if now.flags & MEASURE_STRESS:
             m = mass_of_number(physics, fluid.kinds, whole(fluid.ident, i))
             flux = carried(now.box, grid, m, r, v)
-            terms = whole_numbers(rounded(flux, uniform_scales(physics.stress_scale, flux)))
+            terms = whole_numbers(added_fixed(flux, physics.stress_scale, integers(flux)))
             add_words(fluid.tensor[part], i // BLOCK * len(terms), terms)
 
     return add

@@ -26,12 +26,6 @@ def count_crossed(image, i, crossed):
 
 
 @elementwise
-def uniform_scales(scale, values):
-    """A tuple of one scale, as long as `values`."""
-    return "scale"
-
-
-@elementwise
 def whole_numbers(values):
     """Fixed-point numbers without the bits that rounding has added."""
     return "values[{k}] - ROUNDER_BITS"

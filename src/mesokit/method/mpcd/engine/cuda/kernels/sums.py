@@ -13,13 +13,13 @@ from mesokit.devices.device import BLOCK
 from mesokit.method.mpcd.engine.cuda.kernels.rows import (
     from_rows,
     mass_of_number,
-    uniform_scales,
     whole_numbers,
 )
 from mesokit.method.mpcd.engine.measure.sums import bin_at, largest_bits, moments_of, part_in_wave
 from mesokit.scalar.fixed_point import (
     HALF,
     LOW,
+    added_fixed,
     added_quanta,
     integers,
     quanta,
@@ -95,7 +95,7 @@ def add_to_waves(i, physics, box, fluid, waves, copies, sums):
         start = i // BLOCK % copies * many
         for w in range(many):
             part = part_in_wave(reals(turns, w * d, physics.zero), m, r, v)
-            terms = whole_numbers(rounded(part, uniform_scales(scale, part)))
+            terms = whole_numbers(added_fixed(part, scale, integers(part)))
             add_words(sums, (start + w) * len(terms), terms)
 
 

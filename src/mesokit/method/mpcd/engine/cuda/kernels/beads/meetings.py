@@ -1,6 +1,7 @@
 """Beads of solutes in the collision cells: one thread a bead, of which the first of a cell acts.
 
-Who comes first is left to chance. The sums of a cell are floats: they have the order of the CPU.
+Which bead is the first is left to chance. The sums of a cell are floats, so beads are added up in
+the order that the processor's engine has.
 """
 
 from typing import Any, NamedTuple

@@ -1,6 +1,6 @@
 """What one thread does for a molecule in a step: collide its beads, move them, bring them to cells.
 
-Time levels are those of single particles (see `cuda.particles`). Beads stay in the rows of all
+Time levels are those of single particles (see `kernels.particles`). Beads stay in the rows of all
 particles between the sub-steps: neighbouring threads read neighbouring places of a row.
 """
 
