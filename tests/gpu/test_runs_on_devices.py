@@ -9,11 +9,12 @@ import zipfile
 
 import pytest
 
-from mesokit import Disk, Plates, Simulation
+from mesokit import FENE, WCA, Disk, MaxwellBoltzmann, Plates, Polymer, Simulation, Solutes
 from mesokit.devices.host import Host
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.engine.cuda.cost import memory_of
+from mesokit.method.mpcd.engine.cuda.cost import launches_of, memory_of
 from mesokit.method.mpcd.engine.cuda.engine import CUDA
+from tests.helpers.kinds_of_fluid import EMBEDDED
 from tests.helpers.rank_runs import MESOKIT, MPIEXEC, Ranks, same_files
 from tests.helpers.small_fluids import make_case
 
@@ -100,10 +101,54 @@ def test_what_a_device_takes_is_known_without_a_card(case, tmp_path) -> None:
     assert "not measured" in out
 
 
-@pytest.mark.parametrize("walls", [(), (Plates("y", virtual="none"),)], ids=["bulk", "plates"])
-def test_the_memory_that_is_told_is_what_an_engine_takes(walls) -> None:
-    engine = CUDA(make_case((20, 21, 22), density=10, walls=walls), Host())
-    assert memory_of(engine.numbers) == pytest.approx(engine.memory.bytes_held, rel=0.02)
+class Idle:
+    """A device that only counts what it is asked for."""
+
+    name, chip = "idle", (9, 0)
+
+    def __init__(self) -> None:
+        self.bytes = self.launches = 0
+
+    def allocate(self, size) -> int:
+        self.bytes += size
+        return self.bytes
+
+    def kernel(self, body, given) -> None:
+        return None
+
+    def launch(self, kernel, words) -> None:
+        self.launches += 1
+
+    def clear(self, address, size) -> None:
+        self.launches += 1
+
+    def free(self, address) -> None: ...
+    def write(self, address, values) -> None: ...
+    def read(self, address, values) -> None: ...
+    def wait(self) -> None: ...
+
+
+CHAINS = Solutes((Polymer(5, length=4),), bond=FENE(), pair=WCA(), mass=3.0, substeps=7)
+HELD = {"thermostat": MaxwellBoltzmann()}
+ASKED = {
+    "bulk": HELD,
+    "plates": HELD | {"walls": [Plates("y")]},
+    "chains": HELD | {"solutes": CHAINS},
+    "beads in the fluid": HELD | {"solutes": EMBEDDED, "walls": [Plates("y", virtual="none")]},
+}
+
+
+@pytest.mark.parametrize("parts", ASKED.values(), ids=ASKED)
+def test_what_is_told_of_a_case_is_what_an_engine_asks_a_device_for(parts) -> None:
+    idle = Idle()
+    engine = CUDA(make_case((40, 41, 42), density=10, **parts), idle)
+    assert memory_of(engine.numbers) == pytest.approx(idle.bytes, rel=0.02)
+    counts = []
+    for steps in (3, 3, 4):
+        before = idle.launches
+        engine.advance(steps)
+        counts.append(idle.launches - before)
+    assert counts[2] - counts[1] == launches_of(engine.numbers)
 
 
 @pytest.mark.long

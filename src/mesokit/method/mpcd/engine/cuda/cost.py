@@ -13,6 +13,8 @@ from mesokit.case.case import Case
 from mesokit.devices.records import AtOnce, adding
 from mesokit.loops.layout import record_length, sums_length
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+from mesokit.method.mpcd.engine.embedded.allocate import most_near_beads
+from mesokit.method.mpcd.engine.embedded.state import PARTNERS
 from mesokit.seam.method import Row
 
 
@@ -42,16 +44,41 @@ CARDS = (
 IN_2D = 0.6  # times as many operations as in 3D
 LAUNCH = 10e-6  # seconds from one launch of a kernel to the next, at least
 REAL, WHOLE = 8, 4  # bytes of a number
+TABLES = "estimate, without tables of walls and rows of beads"
 
 
 def memory_of(numbers: Numbers) -> int:
-    """Bytes of a device for the particles and cells of a case, without tables of solids."""
+    """Bytes of a device for the particles and cells of a case.
+
+    Left out are tables of walls, which a run makes, and rows of beads, which are small.
+    """
     d, among_solids = numbers.dimension, numbers.solids is not None
     row = 2 * d * REAL + d * WHOLE + WHOLE  # positions, velocities, images, number
     spare = REAL + 2 * WHOLE + WHOLE * among_solids  # of sorts, and the list of flights
     cell = sums_length(len(numbers.scales)) * REAL
     cell += record_length(numbers.coefficient_count) * REAL + 2 * WHOLE
-    return numbers.n * (row + spare) + numbers.number_of_cells * cell
+    solutes, near = numbers.case.solutes, 0
+    if solutes is not None:
+        cell += 2 * WHOLE  # beads by cell
+        pair = solutes.solvent_pair
+        if pair is not None:
+            cell, spare = cell + REAL, spare + WHOLE  # cells and particles near beads
+            of_one = (2 + PARTNERS) * WHOLE + (1 + d) * REAL
+            near = most_near_beads(solutes, pair, numbers) * of_one
+    return numbers.n * (row + spare) + numbers.number_of_cells * cell + near
+
+
+def launches_of(numbers: Numbers) -> int:
+    """Launches of a step with a thermostat, as `step.py` lists them; clearing a counter is one."""
+    solutes, launches = numbers.case.solutes, 4  # sweep, collisions, those that draw with care
+    if numbers.solids is not None:
+        launches += 2  # flights that may meet them
+    launches += {"none": 0, "extrapolate": 2}.get(numbers.virtual, 1)
+    if solutes is not None:
+        lists, embedded = bool(solutes.different_pairs), solutes.solvent_pair is not None
+        first, each = 1 + 3 * lists + 2 * embedded, 2 + 2 * lists + 3 * embedded
+        launches += first + solutes.substeps * each + (5 if embedded else 7)
+    return launches
 
 
 def seconds_of_step(numbers: Numbers, card: Card) -> float:
@@ -64,20 +91,19 @@ def seconds_of_step(numbers: Numbers, card: Card) -> float:
     traffic = copies + additions + card.cell * numbers.number_of_cells / max(numbers.n, 1)
     operations = numbers.case.fluid.collision.operations
     arithmetic = operations * (IN_2D if d == 2 else 1.0) / card.arithmetic
-    launches = 6 if numbers.solids is not None else 3
-    return max(numbers.n * max(traffic, arithmetic), launches * LAUNCH)
+    return max(numbers.n * max(traffic, arithmetic), launches_of(numbers) * LAUNCH)
 
 
 def rows(case: Case) -> list[Row]:
     """Memory on a device, and the time of the run on common cards, for `mesokit check`."""
     numbers = Numbers(case)
     needed, steps = memory_of(numbers), case.run.warmup + case.run.steps
-    found: list[Row] = [("device memory", size_text(needed), "estimate, without tables of solids")]
+    found: list[Row] = [("device memory", size_text(needed), TABLES)]
     for card in CARDS:
         name, step = f"on one {card.name}", seconds_of_step(numbers, card)
         rate = f"{numbers.n / step:.2g} particle-steps/s"
         basis = "prototypes measured" if card.measured else "bandwidths, not measured"
-        note = f"{rate}, predicted from {basis}; no walls, samples or files"
+        note = f"{rate}, predicted from {basis}; no walls, bonds, samples or files"
         if needed > card.memory:
             found.append((name, "too large", f"it has {size_text(card.memory)}"))
         else:

@@ -11,6 +11,7 @@ from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
 from mesokit.method.mpcd.engine.embedded.state import PARTNERS, Embedded
 from mesokit.method.mpcd.solutes import Solutes
+from mesokit.potential import Pair
 from mesokit.potential.thermal import boltzmann_volume
 
 FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
@@ -18,22 +19,32 @@ NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a 
 ROOM = 3.0  # times as many particles near beads as there are in equilibrium
 
 
+def reach_of(pair: Pair, skin: float, numbers: Numbers) -> tuple[float, float, float]:
+    """How far beads reach in a step, a particle goes in it, and surfaces make it go further."""
+    fluid, solids = numbers.case.fluid, numbers.solids
+    thermal = fluid.timestep * math.sqrt(fluid.kT / min(numbers.masses_of_kinds))
+    diffuse = any(body.surface.rule == "diffuse" for body in (solids.bodies if solids else []))
+    # A particle gains at most twice the speed of a surface that reflects it.
+    further = 2.0 * fluid.timestep * fastest_surface(numbers.case) + NEVER * thermal * diffuse
+    travel = FAST * thermal + further
+    reach = (pair.reach + skin + travel) * (1.0 + 1e-9)  # rounded up
+    return reach, travel, further
+
+
+def most_near_beads(given: Solutes, pair: Pair, numbers: Numbers) -> int:
+    """Room for the particles that beads may reach in a step."""
+    reach, fluid = reach_of(pair, given.skin, numbers)[0], numbers.case.fluid
+    near = boltzmann_volume(pair.kernel(), numbers.dimension, fluid.kT, reach)
+    return int(min(numbers.n, ROOM * given.beads * numbers.density * near + 1000))
+
+
 def embedded_of(given: Solutes, numbers: Numbers, threads: int) -> tuple:
     """One `Embedded` for solutes with a solvent pair; () for those that collide with the fluid."""
     if given.solvent_pair is None:
         return ()
-    case, d = numbers.case, numbers.dimension
-    fluid, pair = case.fluid, given.solvent_pair
-    thermal = fluid.timestep * math.sqrt(fluid.kT / min(numbers.masses_of_kinds))
-    diffuse = any(
-        body.surface.rule == "diffuse" for body in (numbers.solids.bodies if numbers.solids else [])
-    )
-    # A particle gains at most twice the speed of a surface that reflects it.
-    further = 2.0 * fluid.timestep * fastest_surface(case) + NEVER * thermal * diffuse
-    travel = FAST * thermal + further
-    reach = (pair.reach + given.skin + travel) * (1.0 + 1e-9)  # rounded up
-    expected = given.beads * numbers.density * boltzmann_volume(pair.kernel(), d, fluid.kT, reach)
-    most = int(min(numbers.n, ROOM * expected + 1000))
+    d, pair = numbers.dimension, given.solvent_pair
+    reach, travel, further = reach_of(pair, given.skin, numbers)
+    most = most_near_beads(given, pair, numbers)
     cells = tuple(float(n) for n in numbers.cells)
     zero = (0.0,) * d
     return (
