@@ -54,7 +54,10 @@ def pair(device: Any, measures: Sequence[str] = (), **parts: Any) -> Pair:
 
 
 def record(file: Path, chip: Chip, **parts: Any) -> None:
-    """Write the tape of a small fluid, which expects its rows in the order of particles."""
+    """Write the tape of a small fluid, which expects its rows in the order of particles.
+
+    Places and velocities of beads are expected in the order of the first.
+    """
     recorded = Recorded(Emulated(chip))
     measures = ("stress",)  # as tests of bulk fluids have, which share the kernels
     engine = CUDA(make_case(**parts), recorded, measures)
@@ -64,6 +67,9 @@ def record(file: Path, chip: Chip, **parts: Any) -> None:
     reals = [(row, "float64") for row in (*rows.r, *rows.v)]
     wholes = [(row, "int32") for row in (rows.ident, *rows.image)]
     recorded.expect(engine.n, [*wholes, *reals])
+    if (beads := engine.memory.beads) is not None:
+        of_beads = [(row, "float64") for row in (beads.group.r, beads.group.v)]
+        recorded.expect(beads.number * engine.dimension, of_beads)
     recorded.save(file, steps=STEPS)
 
 

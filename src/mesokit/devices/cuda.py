@@ -6,12 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import typeof
 from numpy.typing import NDArray
 
 from mesokit.case.amounts import size_text
 from mesokit.devices.compile import INSTALL
-from mesokit.devices.cubins import made
 from mesokit.devices.device import BLOCK
 from mesokit.errors import RunError
 
@@ -115,6 +113,10 @@ class Cuda:
 
     def kernel(self, body: Callable, given: tuple[Any, ...]) -> Any:
         """The kernel of a body, for arguments of these types; loaded as machine code."""
+        from numba import typeof  # tapes play where no compiler is
+
+        from mesokit.devices.cubins import made
+
         kinds = tuple(map(typeof, given))
         if (body, kinds) not in self._kernels:
             self._kernels[body, kinds] = self.loaded(*made(body, kinds, self.chip)[:2])
