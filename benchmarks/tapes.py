@@ -37,17 +37,17 @@ def fluids() -> dict[str, dict[str, Any]]:
     )
     from tests.helpers.on_devices import bulk, kinds_of_bulk
 
-    kinds = kinds_of_bulk(3)
+    kinds = kinds_of_bulk()
     held = {"collision": SRD(angle=130.0), "thermostat": MaxwellBoltzmann()}
     driven = bulk(2) | held | {"force": Uniform((0.02, 0.0)), "size": (10, 11)}
     disk = {"walls": [Disk(centre=(5.2, 5.0), radius=3.0)], "collision": SRDPlusA(angle=130.0)}
     chains = Molecule(length=3, bond=Harmonic(K=1.0), substeps=2)
     solutes = Solutes((Polymer(5, length=4),), mass=4.0, bond=FENE(), pair=WCA(), substeps=50)
     return {
-        "rule-at": kinds["rule AT"],
-        "thermostat": kinds["thermostat MaxwellBoltzmann"],
-        "angular-momentum": kinds["rule SRDPlusA"],
-        "sheared-mixture": kinds["sheared mixture"],
+        "at": kinds["2D AT"],
+        "thermostat": kinds["2D SRD"],
+        "angular-momentum": kinds["2D SRDPlusA"],
+        "sheared-mixture": kinds["3D mixture"],
         "plates": driven | {"walls": [Plates("y")]},
         "disk": driven | disk,
         "molecules": bulk(3) | held | {"density": 9, "molecule": chains},

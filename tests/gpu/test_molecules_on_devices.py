@@ -8,59 +8,45 @@ from mesokit import (
     FENE,
     WCA,
     Bending,
-    Disk,
     Harmonic,
     MaxwellBoltzmann,
     Molecule,
-    Plates,
     RunError,
-    Surface,
-    Uniform,
 )
-from mesokit.devices.host import Host
+from tests.gpu.conftest import CHIPS
+from tests.helpers.kinds_of_fluid import MOLECULES
 from tests.helpers.on_devices import bulk, pair
 from tests.helpers.small_fluids import assert_same
 
-HOST, MEASURED = Host(7), ("stress", "walls")
-SPRING = Harmonic(K=1.0)
-PUSHED = {"thermostat": MaxwellBoltzmann(), "force": Uniform((0.05, -0.02))}
-CHAINS = bulk(2) | {"density": 9, "molecule": Molecule(length=3, bond=SPRING, substeps=2)}
+MEASURED = ("stress", "walls")
 SHEARED = bulk(3) | {
     "density": 7, "molecule": Molecule(length=7, bond=FENE()),
     "thermostat": MaxwellBoltzmann(), "shear_rate": 0.2,
-}  # fmt: skip
-SLIT = bulk(2) | PUSHED | {
-    "molecule": Molecule(bond=SPRING, substeps=2), "walls": [Plates("y", virtual="none")],
 }  # fmt: skip
 STIFF_RINGS = bulk(2) | {
     "density": 9, "timestep": 0.1, "thermostat": MaxwellBoltzmann(),
     "molecule": Molecule(topology="ring", length=3, bond=FENE(), pair=WCA(), substeps=30),
 }  # fmt: skip
 BENT = bulk(3) | {
-    "collision": AT(), "molecule": Molecule(length=4, bond=SPRING, bending=Bending(kappa=2.0)),
+    "collision": AT(),
+    "molecule": Molecule(length=4, bond=Harmonic(K=1.0), bending=Bending(kappa=2.0)),
 }  # fmt: skip
-STARS = {
-    "size": (16, 12), "density": 8, "timestep": 0.5, **PUSHED,
-    "molecule": Molecule(topology="star", length=4, arms=3, bond=SPRING, substeps=2),
-    "walls": [Disk(centre=(8, 6), radius=3, virtual="none", surface=Surface("diffuse"))],
-}  # fmt: skip
-QUICK = {
-    "sheared chains": SHEARED,
-}
+QUICK = {"sheared chains": SHEARED}
 LONG = {
-    "dimers in a slit": SLIT,
-    "exact dimers": bulk(2) | PUSHED | {"molecule": Molecule(bond=SPRING, propagation="exact")},
-    "chains": CHAINS,
-    "exact dimers in 3D": bulk(3) | {"molecule": Molecule(bond=SPRING, propagation="exact")},
+    **{name: MOLECULES[name] for name in ("dimers in a slit", "stars about a disk")},
+    "chains whose shear oscillates": MOLECULES["chains whose shear oscillates"],
+    "exact dimers": bulk(3) | {"molecule": Molecule(bond=Harmonic(K=1.0), propagation="exact")},
     "stiff rings": STIFF_RINGS,
     "chains that bend": BENT,
-    "chains whose shear oscillates": SHEARED | {"shear_frequency": 0.3},
-    "stars about a disk": STARS,
 }
-KINDS = [
-    *(pytest.param(kind, id=name) for name, kind in QUICK.items()),
-    *(pytest.param(kind, id=name, marks=pytest.mark.long) for name, kind in LONG.items()),
-]
+
+
+def rows():
+    """Every kind on a chip; that which is quick on the host alone."""
+    yield from (pytest.param("host", kind, id=f"{name}, host") for name, kind in QUICK.items())
+    for place, (name, kind) in enumerate((QUICK | LONG).items()):
+        device = f"checked {CHIPS[place % len(CHIPS)]}"
+        yield pytest.param(device, kind, marks=pytest.mark.long, id=f"{name}, {device}")
 
 
 def of_bonds(fluid) -> list:
@@ -70,17 +56,19 @@ def of_bonds(fluid) -> list:
     return [fluid.bond_vectors(), fluid.whole_positions(), fluid.potential_energy(), sums]
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_molecules_have_the_same_bits(kind) -> None:
-    both = pair(HOST, MEASURED, **kind)
+@pytest.mark.parametrize(("device", "kind"), list(rows()))
+def test_molecules_have_the_same_bits(devices, device, kind) -> None:
+    parts = {name: part for name, part in kind.items() if name != "measures"}
+    both = pair(devices(device), MEASURED, **parts)
     for steps in (12, 28):
         both.advance(steps, ("stress",))
         both.require_same()
         assert_same(of_bonds(both.cpu), of_bonds(both.on_device))
+    assert getattr(devices(device), "faults", {}) == {}
 
 
-def test_a_bond_that_tears_is_named_as_on_the_processor() -> None:
-    both = pair(HOST, MEASURED, **SHEARED)
+def test_a_bond_that_tears_is_named_as_on_the_processor(devices) -> None:
+    both = pair(devices("host"), MEASURED, **SHEARED)
     whole, state = both.cpu.state(), both.cpu.state()
     for bead in (0, 90, 91, 306):  # far from the others of their molecules
         state["positions"][bead] += 5.0

@@ -18,7 +18,7 @@ from tests.helpers.on_devices import kinds_of_bulk, record
 
 CHIP = (9, 0)
 ROOT = Path(__file__).resolve().parents[2]
-KIND = kinds_of_bulk(2)["rule AT"]
+KIND = kinds_of_bulk()["2D AT"]
 
 
 class OneBitLess(Emulated):

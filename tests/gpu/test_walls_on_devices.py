@@ -5,8 +5,6 @@ States hold how the flow rises from each piece of surface, and readings what eac
 
 from __future__ import annotations
 
-import functools
-
 import pytest
 
 from mesokit import (
@@ -23,27 +21,15 @@ from mesokit import (
     Surface,
     Uniform,
 )
-from mesokit.devices.checked import Checked
-from mesokit.devices.host import Host
-from mesokit.method.mpcd.engine.cuda.refused import refused
+from tests.gpu.conftest import CHIPS
 from tests.helpers.on_devices import pair
-from tests.helpers.small_fluids import make_case
 
 STEPS = 30  # three sorts more than that at the start, at this timestep
 MEASURED = ("walls",)
-CHIPS = ((9, 0), (8, 0), (12, 0))
-DEVICES = {
-    "host": lambda: Host(3),
-    **{f"checked {chip}": functools.partial(Checked, chip) for chip in CHIPS},
-}
 MIXED = (Species(mass=1, density=3), Species(mass=2.5, density=5))
 MOVING = {2: Surface(velocity=(0.2, 0.0)), 3: Surface(velocity=(0.2, 0.0, 0.1))}
 TURNING = {2: Surface(rotation=0.1), 3: Surface(rotation=(0.0, 0.0, 0.1))}
-QUICK = {
-    "2D moving plates": "host",
-    "2D turning solid": "checked (9, 0)",
-    "2D plates, mixture": "checked (9, 0)",
-}
+QUICK = {"2D moving plates": "host", "2D turning solid": "checked (9, 0)"}
 
 
 def fluid(dimension: int, **parts) -> dict:
@@ -61,36 +47,43 @@ def solid(dimension: int, **parts) -> Disk | Sphere:
     return Sphere(centre=(3.1, 3.0, 3.0), radius=1.8, **parts)
 
 
-def kinds(dimension: int) -> dict[str, dict]:
-    """Every rule of virtual particles, at plates and solids, and every way to draw them."""
-    made = functools.partial(fluid, dimension)
-    between, around = Plates("y"), solid(dimension)
-    moving = Plates("y", lower=MOVING[dimension], upper=Surface("diffuse"))
-    found = {
-        "moving plates": made(walls=[moving]),
-        "turning solid": made(walls=[solid(dimension, surface=TURNING[dimension])]),
+def kinds() -> dict[str, dict]:
+    """Every rule of virtual particles, at plates and solids, and every way to draw them.
+
+    A kind costs its compiling, so that each has several parts at once.
+    """
+    kept = {"thermostat": Rescale()}
+    drawn = {"collision": AT(), "thermostat": NoThermostat()}
+    angular = {"collision": SRDPlusA(angle=130.0)}
+    mixed, many = {"species": MIXED}, {"density": 40}  # numbers of those are drawn in parts
+    diffuse = Surface("diffuse")
+
+    def plates(d: int, **parts) -> Plates:
+        return Plates("y", lower=MOVING[d], upper=diffuse, **parts)
+
+    def turning(d: int, **parts) -> Disk | Sphere:
+        return solid(d, surface=TURNING[d], **parts)
+
+    return {
+        "2D moving plates": fluid(2, walls=[plates(2)]),
+        "2D turning solid": fluid(2, walls=[turning(2)]),
+        "2D plates that fill, mixture": fluid(2, walls=[plates(2, virtual="fill")], **mixed),
+        "2D plates that top up, SRD+a": fluid(2, walls=[plates(2, virtual="top-up")], **angular),
+        "2D plates and solid, AT": fluid(2, walls=[Plates("y"), solid(2)], **drawn),
+        "2D solid that fills, SRD+a": fluid(2, walls=[turning(2, virtual="fill")], **angular),
+        "2D solid that tops up, dense": fluid(2, walls=[turning(2, virtual="top-up")], **many),
+        "2D solid, mixture": fluid(2, walls=[solid(2)], **mixed),
+        "3D plates, energy kept": fluid(3, walls=[plates(3)], **kept),
+        "3D plates, SRD+a": fluid(3, walls=[plates(3)], **angular),
+        "3D plates that fill, AT": fluid(3, walls=[plates(3, virtual="fill")], **drawn),
+        "3D solid that fills, dense": fluid(3, walls=[turning(3, virtual="fill")], **many),
+        "3D solid, AT": fluid(3, walls=[turning(3)], **drawn),
+        "3D solid that tops up, mixture": fluid(3, walls=[solid(3, virtual="top-up")], **mixed),
+        "3D plates and solid, energy kept": fluid(3, walls=[Plates("y"), solid(3)], **kept),
     }
-    for rule in ("extrapolate", "fill", "top-up"):
-        found[f"plates, {rule}"] = made(walls=[Plates("y", virtual=rule)])
-        found[f"solid, {rule}"] = made(walls=[solid(dimension, virtual=rule)])
-    for name, wall in {"plates": between, "solid": around}.items():
-        found[f"{name}, energy kept"] = made(walls=[wall], thermostat=Rescale())
-        found[f"{name}, AT"] = made(walls=[wall], collision=AT(), thermostat=NoThermostat())
-        found[f"{name}, SRD+a"] = made(walls=[wall], collision=SRDPlusA(angle=130.0))
-        found[f"{name}, mixture"] = made(walls=[wall], species=MIXED)
-    found["dense"] = made(walls=[around], density=40)  # numbers are drawn in parts
-    found["plates and solid"] = made(walls=[between, around])
-    return found
 
 
-KINDS = {f"{d}D {name}": parts for d in (2, 3) for name, parts in kinds(d).items()}
-
-
-@pytest.fixture(scope="module")
-def devices():
-    """Each device once: kernels are made for the first fluid that needs them."""
-    made = {}
-    return lambda name: made.setdefault(name, DEVICES[name]())
+KINDS = kinds()
 
 
 def rows():
@@ -121,8 +114,3 @@ def test_walls_without_measurements_have_the_same_bits(devices) -> None:
     both = pair(devices("host"), **KINDS["2D moving plates"])
     both.advance(STEPS)
     both.require_same()
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_virtual_particles_of_no_kind_are_refused(kind) -> None:
-    assert list(refused(make_case(**KINDS[kind]))) == []

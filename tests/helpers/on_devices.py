@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit import SRD, Demix, MaxwellBoltzmann, Rescale, Species, SteadyShear, Uniform
+from mesokit import (
+    AT,
+    SRD,
+    ATPlusA,
+    Demix,
+    MaxwellBoltzmann,
+    NoCollision,
+    NoThermostat,
+    Species,
+)
 from mesokit.case.shear import HISTORIES
 from mesokit.devices.compile import Chip
 from mesokit.devices.emulated import Emulated
@@ -23,6 +33,8 @@ from tests.helpers.small_fluids import assert_same, example, make_case
 
 STEPS = 12  # one more sort than that at the start, at this timestep
 TIMESTEP = 0.5
+PARTS = {"collision", "thermostat", "force", "shear"}
+OF_ONE_MASS: dict[str, Any] = {"species": (Species(mass=1, density=4), Species(mass=1, density=4))}
 
 
 class Pair(NamedTuple):
@@ -96,28 +108,31 @@ def bulk(dimension: int, **parts: Any) -> dict[str, Any]:
     return {"size": size, "density": 8, "timestep": TIMESTEP} | parts
 
 
-def kinds_of_bulk(dimension: int) -> dict[str, dict[str, Any]]:
-    """Every rule, thermostat, force and history of the shear, and mixtures."""
-    held = {"collision": SRD(angle=130.0), "thermostat": MaxwellBoltzmann()}
-    force = Uniform((0.01,) + (0.0,) * (dimension - 1))
-    kinds = {f"rule {rule.__name__}": {"collision": example(rule, dimension)} for rule in RULES}
-    kinds |= {
-        f"thermostat {one.__name__}": held | {"thermostat": example(one, dimension)}
-        for one in THERMOSTATS
-    }
-    kinds |= {f"force {one.__name__}": held | {"force": example(one, dimension)} for one in FORCES}
-    kinds |= {
-        f"shear {one.__name__}": held | {"shear": example(one, dimension)} for one in HISTORIES
-    }
-    kinds["mixture"] = held | {
+def kinds_of_bulk() -> dict[str, dict[str, Any]]:
+    """Each rule in both dimensions, and among these each thermostat, force and history of shear.
+
+    A kind costs its compiling, so that it has several parts at once, which know nothing of another.
+    """
+    mixture = {
         "species": (Species(mass=1, density=3), Species(mass=2.5, density=5)),
-        "force": force,
+        "collision": SRD(angle=130.0),
+        "thermostat": MaxwellBoltzmann(),
     }
-    kinds["mixture that demixes"] = {
-        "collision": Demix(coupling=0.5),
-        "thermostat": Rescale(),
-        "species": (Species(mass=1, density=4), Species(mass=1, density=4)),
-    }
-    kinds["sheared mixture"] = kinds["mixture"] | {"shear": SteadyShear(0.1)}
-    kinds["sheared mixture"].pop("force")
-    return {name: bulk(dimension, **parts) for name, parts in kinds.items()}
+    kinds, order = {}, [*THERMOSTATS[2:], *THERMOSTATS[:2]]
+    for d, part, given in ((2, "force", FORCES), (3, "shear", HISTORIES)):
+        flows = itertools.cycle(given)
+        thermostats = itertools.cycle(order[:: 1 if d == 2 else -1])
+        for rule in RULES:
+            thermostat = NoThermostat if rule in (AT, ATPlusA, NoCollision) else next(thermostats)
+            parts = {"collision": example(rule, d), "thermostat": example(thermostat, d)}
+            if rule is Demix:
+                parts |= OF_ONE_MASS
+            if rule not in (Demix, NoCollision) or d == 2:  # no shear goes with these
+                parts[part] = example(next(flows), d)
+            kinds[f"{d}D {rule.__name__}"] = bulk(d, **parts)
+        free = {"collision": SRD(angle=130.0), "thermostat": NoThermostat()}
+        for name, parts in {"SRD alone": free, "mixture": mixture}.items():
+            kinds[f"{d}D {name}"] = bulk(d, **parts, **{part: example(next(flows), d)})
+    used = {type(kind[part]) for kind in kinds.values() for part in kind.keys() & PARTS}
+    assert used >= {*RULES, *THERMOSTATS, *FORCES, *HISTORIES}
+    return kinds

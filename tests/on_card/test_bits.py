@@ -29,7 +29,7 @@ from mesokit.scalar.jit import scalar
 from mesokit.scalar.pointer import put_real, real
 from tests.helpers.on_devices import STEPS, kinds_of_bulk, pair, record
 
-BULK = {f"{d}D {kind}": parts for d in (2, 3) for kind, parts in kinds_of_bulk(d).items()}
+BULK = kinds_of_bulk()
 HELD = {"collision": SRD(angle=130.0), "thermostat": MaxwellBoltzmann(), "timestep": 0.4}
 DRIVEN = HELD | {"force": Uniform((0.02, 0.0, 0.0)), "density": 8}
 MIXED = {"species": (Species(mass=1, density=3), Species(mass=2.5, density=5))}
@@ -62,7 +62,7 @@ CHAINS = Solutes(
     bending=Bending(kappa=2.0),
     substeps=50,
 )
-TAPES = ("2D rule AT", "3D rule SRD", "3D thermostat MaxwellBoltzmann")
+TAPES = ("2D AT", "3D SRD", "2D mixture")
 NUMBERS = 10_001
 
 
