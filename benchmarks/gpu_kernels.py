@@ -19,7 +19,9 @@ from numba import typeof
 
 from mesokit import (
     AT,
+    FENE,
     SRD,
+    WCA,
     ATPlusA,
     Box,
     Case,
@@ -30,7 +32,9 @@ from mesokit import (
     Molecule,
     NoThermostat,
     Plates,
+    Polymer,
     Run,
+    Solutes,
     Sphere,
     SRDPlusA,
     SteadyShear,
@@ -56,6 +60,15 @@ CASES: dict[str, tuple[int, dict[str, Any]]] = {
         3, HELD | {"walls": [Sphere(centre=[4, 4, 4], radius=2)], "force": FORCE[3]},
     ),
     "3D dimers, thermostat": (3, HELD | {"molecule": Molecule(bond=Harmonic(K=4.0))}),
+    "3D slit, SRD+a, thermostat": (
+        3, HELD | {"collision": SRDPlusA(angle=130), "walls": [Plates("z")], "force": FORCE[3]},
+    ),
+    "3D chains, thermostat": (
+        3, HELD | {"solutes": Solutes((Polymer(2, length=4),), bond=FENE(), pair=WCA())},
+    ),
+    "3D beads in the fluid, thermostat": (
+        3, HELD | {"solutes": Solutes((Polymer(2),), coupling="potential", solvent_pair=WCA())},
+    ),
     "2D disk, thermostat": (
         2, HELD | {"walls": [Disk(centre=[4, 4], radius=2)], "force": FORCE[2]},
     ),
@@ -93,8 +106,9 @@ def case_of(name: str, cells: int = 8) -> Case:
     d, parts = CASES[name]
     parts = dict(parts)
     walls, shear = parts.pop("walls", ()), parts.pop("shear", None)
+    solutes = parts.pop("solutes", None)
     box = Box([cells] * d, shear=shear) if shear else Box([cells] * d)
-    return Case(run=Run(steps=1), box=box, fluid=Fluid(**parts), walls=walls)
+    return Case(run=Run(steps=1), box=box, fluid=Fluid(**parts), walls=walls, solutes=solutes)
 
 
 def kernels_of(name: str, chip: tuple[int, int]) -> dict[str, tuple[Any, Any]]:

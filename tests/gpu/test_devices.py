@@ -317,13 +317,24 @@ def test_a_second_card_that_is_not_there_is_an_error() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["gpu", "cud", "cuda:x", "host:1", "emulated:9", "cpu:0", "", None, 3]
+    ("name", "expected"),
+    [
+        ("gpu", "'cpu', 'cuda', 'emulated' or 'host'; did you mean 'cuda'?"),
+        ("cud", "'cpu', 'cuda', 'emulated' or 'host'; did you mean 'cuda'?"),
+        *((name, "'cpu', 'cuda', 'emulated' or 'host'") for name in ("host:1", "cpu:0", "", 3)),
+        *((name, "'cuda', or such as 'cuda:1'") for name in ("cuda:x", "cuda:", "cuda:-1")),
+        ("emulated:9", "'emulated', or such as 'emulated:9.0'"),
+    ],
 )
-def test_a_device_of_another_name_is_an_error(name) -> None:
-    with pytest.raises(
-        CaseError, match=r"device = .*: expected 'cpu', 'cuda', 'emulated' or 'host'"
-    ):
+def test_a_device_of_another_name_is_an_error(name, expected) -> None:
+    with pytest.raises(CaseError, match=re.escape(f"{name!r}: expected {expected}")):
         opened(name)
+
+
+def test_what_the_driver_holds_is_given_back() -> None:
+    driver = FakeDriver()
+    Cuda(driver=driver).close()
+    assert driver.released
 
 
 def test_a_kernel_that_the_assembler_refuses_is_an_error() -> None:

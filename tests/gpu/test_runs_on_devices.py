@@ -9,9 +9,20 @@ import zipfile
 
 import pytest
 
-from mesokit import FENE, WCA, Disk, MaxwellBoltzmann, Plates, Polymer, Simulation, Solutes
+from mesokit import (
+    FENE,
+    WCA,
+    Disk,
+    MaxwellBoltzmann,
+    Plates,
+    Polymer,
+    Simulation,
+    Solutes,
+    Study,
+)
+from mesokit import open as open_run
 from mesokit.devices.host import Host
-from mesokit.errors import CaseError
+from mesokit.errors import CaseError, RunError
 from mesokit.method.mpcd.engine.cuda.cost import launches_of, memory_of
 from mesokit.method.mpcd.engine.cuda.engine import CUDA
 from tests.helpers.kinds_of_fluid import EMBEDDED
@@ -79,6 +90,7 @@ def test_the_record_names_the_device(case, tmp_path) -> None:
     Simulation(case, output=tmp_path / "run", device="host").run(2)
     record = json.loads((tmp_path / "run" / "provenance.json").read_text())
     assert record["device"] == "host"
+    assert "on the device host" in str(open_run(tmp_path / "run"))
 
 
 def mesokit(folder, *words):
@@ -96,9 +108,39 @@ def test_a_device_that_is_not_there_is_an_error_before_the_run(case, tmp_path) -
 def test_what_a_device_takes_is_known_without_a_card(case, tmp_path) -> None:
     status, out, said = mesokit(tmp_path, "check", case.name, "--device", "cuda")
     assert (status, said) == (0, "")
-    assert "device memory" in out
-    assert "on one H200" in out
-    assert "not measured" in out
+    rows = dict(line.partition("  ")[::2] for line in out.splitlines())
+    assert "on this processor" in rows["run time"]
+    assert "on this processor" in rows["memory"]
+    assert "without tables" in rows["device memory"]
+    assert "6 launches of 10 us each" in rows["on one H200"]
+
+
+def test_a_fluid_too_large_for_this_machine_may_fit_a_card(case, tmp_path) -> None:
+    given = "--device", "cuda", "--set", "box.size=[600, 600, 600]"
+    status, out, _ = mesokit(tmp_path, "check", case.name, *given)
+    assert status == 0
+    rows = dict(line.partition("  ")[::2] for line in out.splitlines())
+    assert "too large" in rows["on one A100 80 GB"]
+    assert "particle-steps/s" in rows["on one H200"]
+    assert "of memory, this machine has" not in out
+
+
+def test_a_study_asks_for_the_device_before_its_first_run(case, tmp_path) -> None:
+    study = Study(case, None, 2, output=tmp_path / "study")
+    with pytest.raises(RunError, match="^device = 'cuda:7': "):
+        study.run(device="cuda:7", progress=False)
+    assert not list((tmp_path / "study").rglob("provenance.json"))
+
+
+@pytest.mark.parametrize(
+    ("chip", "expected"),
+    [("9", "--chip 9: expected a compute"), ("7.0", "capability 7.0: expected one that is known")],
+)
+def test_a_chip_that_is_none_is_an_error_of_one_line(case, tmp_path, chip, expected) -> None:
+    status, _, said = mesokit(tmp_path, "warm", case.name, "--chip", chip)
+    assert status != 0
+    assert expected in said
+    assert "\n" not in said
 
 
 class Idle:

@@ -77,8 +77,8 @@ def kinds() -> dict[str, dict]:
         "3D plates, SRD+a": fluid(3, walls=[plates(3)], **angular),
         "3D plates that fill, AT": fluid(3, walls=[plates(3, virtual="fill")], **drawn),
         "3D solid that fills, dense": fluid(3, walls=[turning(3, virtual="fill")], **many),
-        "3D solid, AT": fluid(3, walls=[turning(3)], **drawn),
-        "3D solid that tops up, mixture": fluid(3, walls=[solid(3, virtual="top-up")], **mixed),
+        "3D solid, AT, mixture": fluid(3, walls=[turning(3)], **drawn, **mixed),
+        "3D solid that tops up": fluid(3, walls=[solid(3, virtual="top-up")]),
         "3D plates and solid, energy kept": fluid(3, walls=[Plates("y"), solid(3)], **kept),
     }
 

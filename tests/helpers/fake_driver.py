@@ -29,7 +29,7 @@ class FakeDriver:
         self.known = known or {}
         self.chip, self.version, self.cards, self.size, self.init = chip, version, cards, size, init
         self.memory: dict[int, np.ndarray] = {}
-        self.behind = Emulated(chip)
+        self.behind, self.released = Emulated(chip), False
 
     def cuInit(self, flags):
         return (self.init,)
@@ -51,6 +51,10 @@ class FakeDriver:
 
     def cuDevicePrimaryCtxRetain(self, device):
         return 0, "context"
+
+    def cuDevicePrimaryCtxRelease(self, device):
+        self.released = True
+        return (0,)
 
     def cuCtxSetCurrent(self, context):
         return (0,)

@@ -48,10 +48,13 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
                 f"trajectory.{'per_decade' if case.noun == 'site' else 'subset'}"
             )
     if not has_memory(memory):
-        yield (
-            f"the run needs {size_text(memory)} of memory, this machine has "
-            f"{size_text(_machine_memory() or 0)}"
-        )
+        yield memory_warning(memory)
+
+
+def memory_warning(needed: float) -> str:
+    """What is said of a run that takes more memory than this machine has."""
+    has = size_text(_machine_memory() or 0)
+    return f"the run needs {size_text(needed)} of memory, this machine has {has}"
 
 
 def has_memory(needed: float) -> bool:

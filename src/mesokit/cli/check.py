@@ -13,7 +13,10 @@ from mesokit.devices.names import CPU
 from mesokit.errors import CaseError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from mesokit.case.case import Case
+    from mesokit.seam.method import Row, Summary
 
 
 @cli.command()
@@ -60,7 +63,7 @@ def check(
     if require_name(device) != CPU:
         with naming(case):
             rows = on_devices(full, device, 1).rows(full)
-        summary = summary._replace(rows=(*summary.rows, *rows))
+        summary = _beside(summary, rows)
     if axes is not None and picture is None:
         raise CaseError("--axes: only for a picture; add --picture")
     drawn = None if picture is None else _draw(full, case, picture, axes)
@@ -80,6 +83,19 @@ def check(
         click.echo(f"warning: {warning}")
     if drawn:
         click.echo(f"picture: {drawn}")
+
+
+def _beside(summary: Summary, rows: Sequence[Row]) -> Summary:
+    """A summary with rows of devices; what is of the processor alone says so."""
+    from mesokit.case.warnings import memory_warning
+
+    here = [
+        (what, value, f"on this processor; {note}" if what in ("run time", "memory") else note)
+        for what, value, note in summary.rows
+    ]
+    of_here = memory_warning(summary.memory)
+    warnings = tuple(one for one in summary.warnings if one != of_here)
+    return summary._replace(rows=(*here, *rows), warnings=warnings)
 
 
 def _draw(full: Case, case: Path, picture: str, axes: tuple[str, ...] | None) -> Path:

@@ -138,7 +138,8 @@ DEVICE = click.option(
     "--device",
     default=CPU,
     metavar="NAME",
-    help="cpu, or cuda for a card of NVIDIA: the same bits.  [cpu]",
+    help="cpu, or cuda for a card of NVIDIA (cuda:1: the second); emulated and host run its "
+    "kernels on the processor, slowly. The same bits on all.  [cpu]",
 )
 THREADS = click.option("--threads", type=click.IntRange(1), help="Threads (all cores unless said).")
 

@@ -1,5 +1,6 @@
 """Commands on compiled code: warm, cache."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,6 +13,13 @@ from mesokit.devices.names import CPU
 from mesokit.errors import CaseError, MesokitError, RunError
 
 
+def chip_of(context: click.Context, option: click.Parameter, text: str | None) -> str | None:
+    """A compute capability, such as "9.0"."""
+    if text is not None and not re.fullmatch(r"\d{1,2}\.\d", text):
+        raise CaseError(f"--chip {text}: expected a compute capability, such as 9.0")
+    return text
+
+
 @cli.command()
 @click.argument("cases", type=CASE, nargs=-1, metavar="[CASE]...")
 @SET
@@ -20,6 +28,7 @@ from mesokit.errors import CaseError, MesokitError, RunError
 @click.option(
     "--chip",
     metavar="N.N",
+    callback=chip_of,
     help="Kernels of a card of this compute capability, such as 9.0; none is needed.",
 )
 @click.option("--quiet", is_flag=True, help="Errors only.")

@@ -18,7 +18,7 @@ from mesokit.errors import RunError
 
 Chip = tuple[int, int]
 ENTRY = "mesokit_kernel"
-INSTALL = "expected `pip install 'mesokit[cuda13]'`, or [cuda12] for drivers below 580"
+INSTALL = "expected `pip install '.[cuda13]'` in a clone, or [cuda12] for drivers below 580"
 
 
 class Machine(NamedTuple):
@@ -39,6 +39,19 @@ def _numba_cuda() -> Any:
     for module in (compiler, dispatcher):  # asked even where the chip is given
         module.get_current_device = _AnyDevice
     return compiler, nvvm
+
+
+@functools.cache
+def require_chip(chip: Chip) -> None:
+    """Raise RunError for a compute capability that the compiler does not know."""
+    _numba_cuda()
+    from numba.cuda.cudadrv.nvrtc import get_supported_ccs
+
+    known = get_supported_ccs()
+    if chip not in known:
+        names = ", ".join(f"{major}.{minor}" for major, minor in known)
+        wrong = f"{chip[0]}.{chip[1]}"
+        raise RunError(f"compute capability {wrong}: expected one that is known here: {names}")
 
 
 class _AnyDevice:
@@ -64,6 +77,7 @@ def compiled(function: Callable, gives: Any, kinds: tuple[Any, ...], chip: Chip,
 
     Without contraction a * b + c keeps its two roundings, as on the processor.
     """
+    require_chip(chip)
     compiler, _ = _numba_cuda()
     options = {"opt": level, "fma": 0}
     return compiler.compile_cuda(function, gives, kinds, nvvm_options=options, cc=chip)

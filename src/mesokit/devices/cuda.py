@@ -29,7 +29,8 @@ class Cuda:
     """
 
     def __init__(self, ordinal: int = 0, driver: Any = None) -> None:
-        self._driver = driver or _driver()
+        self._where = WHERE if ordinal == 0 else f"device = 'cuda:{ordinal}'"
+        self._driver = driver or _driver(self._where)
         self._require_driver()
         count = self._ask(self._driver.cuDeviceGetCount())
         if ordinal >= count:
@@ -46,24 +47,29 @@ class Cuda:
         if self.chip < LEAST_CHIP:
             least, has = (".".join(map(str, chip)) for chip in (LEAST_CHIP, self.chip))
             text = f"compute capability {has}; expected {least} or more"
-            raise RunError(f"{WHERE}: {self.name} has {text}")
+            raise RunError(f"{self._where}: {self.name} has {text}")
+        self._device = device
         self._context = self._ask(self._driver.cuDevicePrimaryCtxRetain(device))
         self._ask(self._driver.cuCtxSetCurrent(self._context))
         self._kernels: dict[Any, Any] = {}
         self._modules: list[Any] = []
 
+    def close(self) -> None:
+        """Give back what the driver holds for this process; the device is of no use then."""
+        self._ask(self._driver.cuDevicePrimaryCtxRelease(self._device))
+
     def _require_driver(self) -> None:
         status, *_ = self._driver.cuInit(0)
         if int(status) == NO_DEVICE:
-            raise RunError(f"{WHERE}: the driver knows no card here; expected --device cpu")
+            raise RunError(f"{self._where}: the driver knows no card here; expected --device cpu")
         if int(status):
-            raise RunError(f"{WHERE}: the driver of the card does not start ({status})")
+            raise RunError(f"{self._where}: the driver of the card does not start ({status})")
         found = self._ask(self._driver.cuDriverGetVersion())
         needed = _version_needed()
         if found // 1000 < needed:
             has = f"{found // 1000}.{found % 1000 // 10}"
             text = f"the driver is for CUDA {has}, what is installed for {needed}.0"
-            raise RunError(f"{WHERE}: {text}; expected a newer driver, or {INSTALL[9:]}")
+            raise RunError(f"{self._where}: {text}; expected a newer driver, or {INSTALL[9:]}")
 
     def _attribute(self, kind: Any, device: Any) -> int:
         return int(self._ask(self._driver.cuDeviceGetAttribute(kind, device)))
@@ -72,7 +78,7 @@ class Cuda:
         """The answer of the driver. Raises RunError with the name of its error."""
         status, *values = answer
         if int(status):
-            raise RunError(f"{WHERE}: the driver says {getattr(status, 'name', status)}")
+            raise RunError(f"{self._where}: the driver says {getattr(status, 'name', status)}")
         return values[0] if len(values) == 1 else tuple(values)
 
     @property
@@ -87,7 +93,7 @@ class Cuda:
         if int(status) == OUT_OF_MEMORY:
             free, total = map(size_text, self.memory)
             text = f"{size_text(size)} more do not fit, {free} of {total} are free"
-            raise RunError(f"{WHERE}: out of memory on {self.name}: {text}")
+            raise RunError(f"{self._where}: out of memory on {self.name}: {text}")
         return int(self._ask((status, *address)))
 
     def free(self, address: int) -> None:
@@ -144,17 +150,17 @@ class Cuda:
         self._ask(self._driver.cuCtxSynchronize())
 
 
-def _driver() -> Any:
+def _driver(where: str) -> Any:
     """The module of the driver. Raises RunError where it is not installed."""
     try:
         from cuda.bindings import driver
     except ImportError as error:
-        raise RunError(f"{WHERE}: cuda-bindings is missing ({error}); {INSTALL}") from None
+        raise RunError(f"{where}: cuda-bindings is missing ({error}); {INSTALL}") from None
     try:
         driver.cuDriverGetVersion()
     except Exception:  # its library is not there
         raise RunError(
-            f"{WHERE}: no driver of NVIDIA on this machine; expected --device cpu"
+            f"{where}: no driver of NVIDIA on this machine; expected --device cpu"
         ) from None
     return driver
 

@@ -8,17 +8,33 @@ from mesokit.devices.device import Device
 from mesokit.devices.names import NAMES
 from mesokit.errors import CaseError
 
-MORE = {"cuda": r"\d{1,3}", "emulated": r"\d{1,2}\.\d"}  # after a colon
+NUMBERS = {"cuda": (r"\d{1,3}", "cuda:1"), "emulated": (r"\d{1,2}\.\d", "emulated:9.0")}
+HINTS = {"gpu": "cuda", "GPU": "cuda"}  # what is typed, and meant
 
 
 def require_name(given: Any) -> str:
     """The name of a device; "cuda:1" is the second card, "emulated:8.0" is of that compute
     capability. Raises CaseError for another."""
-    name, _, more = given.partition(":") if isinstance(given, str) else ("", "", "")
-    if name in NAMES and (not more or re.fullmatch(MORE.get(name, "-"), more)):
+    name, colon, more = given.partition(":") if isinstance(given, str) else ("", "", "")
+    if name in NAMES and not colon:
         return str(given)
-    hint = nearest(given, NAMES) if isinstance(given, str) else ""
+    if name in NUMBERS:
+        form, example = NUMBERS[name]
+        if re.fullmatch(form, more):
+            return str(given)
+        raise CaseError(f"device = {show(given)}: expected {show(name)}, or such as {example!r}")
+    meant = HINTS.get(name)
+    hint = f"; did you mean {meant!r}?" if meant else ""
+    if not hint and isinstance(given, str):
+        hint = nearest(given, NAMES)
     raise CaseError(f"device = {show(given)}: expected {one_of(NAMES)}{hint}")
+
+
+def require_there(given: Any) -> None:
+    """Raise RunError where there is no device of a name; no memory is taken on it."""
+    device = opened(given)
+    if (close := getattr(device, "close", None)) is not None:
+        close()
 
 
 def opened(given: Any) -> Device | None:

@@ -6,6 +6,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from mesokit.devices.names import CPU
+
 WAITING = "wait"  # the stage of a step in which a rank does nothing
 
 
@@ -30,7 +32,7 @@ def shared_work(ranks: Any, engine: Any) -> dict[str, Any]:
 
 
 def work_words(provenance: Mapping[str, Any]) -> Iterator[str]:
-    """Lines about `shared_work` of a record, none for one rank.
+    """Lines about a record's device, if it has one, and its `shared_work`, if it has several ranks.
 
     >>> stages = {"sweep": {"least": 1.0, "median": 1.5, "most": 2.0}}
     >>> shared = {"stages": stages, "imbalance": 1.25, "balance": {"cuts moved": 3}}
@@ -38,7 +40,11 @@ def work_words(provenance: Mapping[str, Any]) -> Iterator[str]:
     ...     print(line)
     4 ranks: one had 1.25 times the work of the mean; cuts moved 3
     seconds of a rank (least, median, most): sweep 1, 1.5, 2
+    >>> list(work_words({"ranks": 1, "device": "NVIDIA H200"}))
+    ['on the device NVIDIA H200']
     """
+    if (device := provenance.get("device", CPU)) != CPU:
+        yield f"on the device {device}"
     shared = provenance.get("shared_work")
     if not shared:
         return

@@ -36,8 +36,8 @@ Row = tuple[str, str, str]  # what, its value, and a word on it
 class OnDevices(NamedTuple):
     """How a method runs on a device (see `mesokit.devices`).
 
-    `engine` is a function of a case, a device and what observables need measured. `refused` gives a
-    line, key first, for each thing in a case, on so many ranks, that devices cannot do. `rows` are
+    `engine` is a function of a case, a device and what observables need measured. `refused` says,
+    for each thing in a case, on so many ranks, what devices cannot do. `rows` are
     those of `mesokit check` about memory and time on a device.
     """
 
@@ -281,8 +281,8 @@ def on_devices(case: Case, device: str, ranks: int) -> OnDevices:
     if found is None:
         method = show(case.run.method)
         raise CaseError(f"device = {show(device)}: not for run.method = {method}; expected 'cpu'")
-    for line in found.refused(case, ranks):
-        raise CaseError(line)
+    for said in found.refused(case, ranks):
+        raise CaseError(f"device = {show(device)}: {said}")
     return found
 
 

@@ -11,7 +11,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import outside_parts
-from mesokit.devices.named import require_name
+from mesokit.devices.named import require_name, require_there
 from mesokit.devices.names import CPU
 from mesokit.errors import CaseError, RunError
 from mesokit.processes.cores import usable_cores
@@ -215,11 +215,13 @@ class Study(Shown):
         """
         require_one_process()
         reporter = reporter_for(progress)
+        if require_name(device) != CPU:
+            on_devices(self._case, device, 1)
+            if cluster is None:
+                require_there(device)
         made = [self.path / FILE, *(run.path / CASE for run in self.runs)]
         if not all(file.exists() for file in made):  # not written yet, or removed
             self._make()
-        if require_name(device) != CPU:
-            on_devices(self._case, device, 1)
         workers = self._workers(jobs, threads, device, cluster, options)
         if failed := drive(self.runs, workers, reporter):
             run, why = failed[0]

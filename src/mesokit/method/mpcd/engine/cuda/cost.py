@@ -35,15 +35,16 @@ class Card(NamedTuple):
 
 
 CARDS = (
-    Card("A100 80 GB", (8, 0), 80e9, 1.7e12, 4.8e12, 16e-12, 0.0, 150e-12, False),
-    Card("H100 80 GB", (9, 0), 80e9, 2.9e12, 1.6e13, 12.4e-12, 16e-12, 110e-12, True),
-    Card("H200", (9, 0), 141e9, 4.0e12, 1.6e13, 11e-12, 14e-12, 100e-12, True),
-    Card("RTX 4090", (8, 9), 24e9, 0.9e12, 6.4e11, 14e-12, 0.0, 200e-12, False),
-    Card("RTX 5090", (12, 0), 32e9, 1.6e12, 8.2e11, 12e-12, 16e-12, 150e-12, False),
+    Card("A100 80 GB", (8, 0), 85e9, 1.7e12, 4.8e12, 16e-12, 0.0, 150e-12, False),
+    Card("H100 80 GB", (9, 0), 85e9, 2.9e12, 1.6e13, 12.4e-12, 16e-12, 110e-12, True),
+    Card("H200", (9, 0), 150e9, 4.0e12, 1.6e13, 11e-12, 14e-12, 100e-12, True),
+    Card("RTX 4090", (8, 9), 25.7e9, 0.9e12, 6.4e11, 14e-12, 0.0, 200e-12, False),
+    Card("RTX 5090", (12, 0), 34e9, 1.6e12, 8.2e11, 12e-12, 16e-12, 150e-12, False),
 )
 IN_2D = 0.6  # times as many operations as in 3D
 LAUNCH = 10e-6  # seconds from one launch of a kernel to the next, at least
 REAL, WHOLE = 8, 4  # bytes of a number
+WITHOUT = "no walls, bonds, samples or files"
 TABLES = "estimate, without tables of walls and rows of beads"
 
 
@@ -94,6 +95,14 @@ def seconds_of_step(numbers: Numbers, card: Card) -> float:
     return max(numbers.n * max(traffic, arithmetic), launches_of(numbers) * LAUNCH)
 
 
+def basis_of(numbers: Numbers, card: Card) -> str:
+    """What the time of a step on a card was predicted from."""
+    launches = launches_of(numbers)
+    if seconds_of_step(numbers, card) <= launches * LAUNCH:
+        return f"{launches} launches of {1e6 * LAUNCH:.0f} us each"
+    return "prototypes measured" if card.measured else "bandwidths, not measured"
+
+
 def rows(case: Case) -> list[Row]:
     """Memory on a device, and the time of the run on common cards, for `mesokit check`."""
     numbers = Numbers(case)
@@ -102,8 +111,9 @@ def rows(case: Case) -> list[Row]:
     for card in CARDS:
         name, step = f"on one {card.name}", seconds_of_step(numbers, card)
         rate = f"{numbers.n / step:.2g} particle-steps/s"
-        basis = "prototypes measured" if card.measured else "bandwidths, not measured"
-        note = f"{rate}, predicted from {basis}; no walls, bonds, samples or files"
+        note = (
+            f"{rate}, predicted from {basis_of(numbers, card)}; no walls, bonds, samples or files"
+        )
         if needed > card.memory:
             found.append((name, "too large", f"it has {size_text(card.memory)}"))
         else:

@@ -6,6 +6,6 @@ from mesokit.case.case import Case
 
 
 def refused(case: Case, ranks: int = 1) -> Iterator[str]:
-    """A line, key first, for each thing in a case that devices cannot do."""
+    """For each thing in a case that devices cannot do, what is said of the device."""
     if ranks > 1:
-        yield f"device: not on {ranks} ranks yet; expected one rank, or --device cpu"
+        yield f"not on {ranks} ranks yet; expected one rank, or --device cpu"
