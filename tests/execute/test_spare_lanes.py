@@ -7,6 +7,15 @@ from mesokit import SRD, Box, Case, Fluid, MaxwellBoltzmann, Plates, Run, Unifor
 from mesokit.loops.layout import LANES
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
+from tests.helpers.small_fluids import assert_same
+
+
+def readings(fluid: CPU) -> list:
+    """What is read of particles, one by one and in sums."""
+    number, momentum, energy = fluid.totals()
+    waves = fluid.modes(np.array([[0.3, 0.0], [0.0, 1.0]]))
+    particles = fluid.positions(), fluid.velocities()
+    return [*particles, number, momentum, energy, *fluid.moments((0,), (6,)), *waves]
 
 
 @pytest.mark.parametrize("rubbish", [1e20, -1e20, np.inf, np.nan])
@@ -26,7 +35,7 @@ def test_rubbish_in_spare_lanes_changes_nothing(rubbish: float) -> None:
             memory = fluid.memory
             spare = np.arange(fluid.n, memory.strips * LANES)
             memory.fluid.particles.data[memory.at(k, spare)] = rubbish
+        at_start = readings(fluid)
         fluid.advance(150)
-        found.append((fluid.positions(), fluid.velocities()))
-    assert np.array_equal(found[0][0], found[1][0])
-    assert np.array_equal(found[0][1], found[1][1])
+        found.append([*at_start, *readings(fluid)])
+    assert_same(*found)

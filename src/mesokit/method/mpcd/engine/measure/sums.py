@@ -28,7 +28,7 @@ from mesokit.scalar.fixed_point import (
     rounded,
 )
 from mesokit.scalar.intrinsics import floor
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import elementwise, scalar
 from mesokit.scalar.vector import dot, row, scaled
 
 
@@ -142,8 +142,8 @@ def modes(worker, zero, masses, box, particles, waves, out):
     filling, d = particles.filling, len(zero)
     first, last = share(strips_in(filling), worker.thread, worker.threads)
     # Wave by wave within a strip, which stays in the cache for all of them. Phases are reduced to
-    # one turn before sine and cosine. Lanes that do not count have mass 0, so the loop has no
-    # branch.
+    # one turn before sine and cosine. Lanes that do not count are at rest at 0 and have mass 0, so
+    # the loop has no branch: what was left in spare lanes may be no number.
     for b in range(first, last):
         strip = data[strip_at(b, rows)]
         lanes = lanes_in(filling, b)
@@ -155,9 +155,16 @@ def modes(worker, zero, masses, box, particles, waves, out):
                 r, v, _ = fold(box, r, v, scaled(0.0, zero))
                 m = lane_mass(masses, strip, i, 2 * d)
                 number = particles.ident[b * LANES + i]
-                m = m if i < lanes and waves.first <= number < waves.last else 0.0
+                counts = i < lanes and waves.first <= number < waves.last
+                r, v, m = kept(counts, r), kept(counts, v), m if counts else 0.0
                 sums = added_fixed(part_in_wave(wave, m, r, v), waves.scale, sums)
             add_fixed(out[worker.thread, w], LANES, sums)
+
+
+@elementwise
+def kept(counts, values):
+    """A tuple of numbers, or zeros where they do not count."""
+    return "values[{k}] if counts else 0.0"
 
 
 @scalar
