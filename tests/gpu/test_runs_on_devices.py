@@ -127,7 +127,7 @@ def test_a_fluid_too_large_for_this_machine_may_fit_a_card(case, tmp_path) -> No
 
 def test_a_study_asks_for_the_device_before_its_first_run(case, tmp_path) -> None:
     study = Study(case, None, 2, output=tmp_path / "study")
-    with pytest.raises(RunError, match="^device = 'cuda:7': "):
+    with pytest.raises(RunError, match=r"^device = 'cuda:7': "):
         study.run(device="cuda:7", progress=False)
     assert not list((tmp_path / "study").rglob("provenance.json"))
 
