@@ -115,9 +115,9 @@ def test_what_a_device_takes_is_known_without_a_card(case, tmp_path) -> None:
     assert "6 launches of 10 us each" in rows["on one H200"]
 
 
-def test_a_fluid_too_large_for_this_machine_may_fit_a_card(case, tmp_path) -> None:
-    given = "--device", "cuda", "--set", "box.size=[600, 600, 600]"
-    status, out, _ = mesokit(tmp_path, "check", case.name, *given)
+def test_a_fluid_too_large_for_this_machine_may_fit_a_card(tmp_path) -> None:
+    (tmp_path / "bulk.toml").write_text("[run]\nsteps = 1\n[box]\nsize = [464, 464, 464]\n")
+    status, out, _ = mesokit(tmp_path, "check", "bulk.toml", "--device", "cuda")
     assert status == 0
     rows = dict(line.partition("  ")[::2] for line in out.splitlines())
     assert "too large" in rows["on one A100 80 GB"]

@@ -14,7 +14,7 @@ from tests.helpers.on_devices import STEPS, kinds_of_bulk, pair
 
 MEASURED = ("stress",)
 SIMPLE = "2D SRD"
-QUICK = ("2D AT", SIMPLE, "2D SRDPlusA", "2D mixture")
+QUICK = ("2D AT", SIMPLE)
 KINDS = kinds_of_bulk()
 
 

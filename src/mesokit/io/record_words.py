@@ -6,8 +6,6 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from mesokit.devices.names import CPU
-
 WAITING = "wait"  # the stage of a step in which a rank does nothing
 
 
@@ -43,7 +41,7 @@ def work_words(provenance: Mapping[str, Any]) -> Iterator[str]:
     >>> list(work_words({"ranks": 1, "device": "NVIDIA H200"}))
     ['on the device NVIDIA H200']
     """
-    if (device := provenance.get("device", CPU)) != CPU:
+    if (device := provenance.get("device", "cpu")) != "cpu":
         yield f"on the device {device}"
     shared = provenance.get("shared_work")
     if not shared:

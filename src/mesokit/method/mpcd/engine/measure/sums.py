@@ -156,13 +156,13 @@ def modes(worker, zero, masses, box, particles, waves, out):
                 m = lane_mass(masses, strip, i, 2 * d)
                 number = particles.ident[b * LANES + i]
                 counts = i < lanes and waves.first <= number < waves.last
-                r, v, m = kept(counts, r), kept(counts, v), m if counts else 0.0
+                r, v, m = if_counted(counts, r), if_counted(counts, v), m if counts else 0.0
                 sums = added_fixed(part_in_wave(wave, m, r, v), waves.scale, sums)
             add_fixed(out[worker.thread, w], LANES, sums)
 
 
 @elementwise
-def kept(counts, values):
+def if_counted(counts, values):
     """A tuple of numbers, or zeros where they do not count."""
     return "values[{k}] if counts else 0.0"
 
