@@ -89,7 +89,7 @@ def readings(fluid: Any) -> list[Any]:
     """All that an observable may read."""
     d = fluid.dimension
     waves = np.array([np.full(d, 0.3), np.eye(d)[0]])
-    some = np.array([5, 3, 100])
+    some = np.array([5, 3, min(100, fluid.n - 1)])
     number, momentum, energy = fluid.totals()
     sums = fluid.sums_of_particles(
         lambda part: (part.ids % 3, [part.positions[:, 0], part.velocities[:, 1]]), 3, [1.0, 1.0]
