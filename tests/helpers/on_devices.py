@@ -111,7 +111,7 @@ def bulk(dimension: int, **parts: Any) -> dict[str, Any]:
 def kinds_of_bulk() -> dict[str, dict[str, Any]]:
     """Each rule in both dimensions, and among these each thermostat, force and history of shear.
 
-    A kind costs its compiling, so that it has several parts at once, which know nothing of another.
+    A kind costs its compiling, so it has several parts at once; these are independent.
     """
     mixture = {
         "species": (Species(mass=1, density=3), Species(mass=2.5, density=5)),

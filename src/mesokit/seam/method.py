@@ -37,8 +37,8 @@ class OnDevices(NamedTuple):
     """How a method runs on a device (see `mesokit.devices`).
 
     `engine` is a function of a case, a device and what observables need measured. `refused` says,
-    for each thing in a case, on so many ranks, what devices cannot do. `rows` are
-    those of `mesokit check` about memory and time on a device.
+    for each thing in a case, on so many ranks, what devices cannot do. `rows` are those of
+    `mesokit check` about memory and time on a device.
     """
 
     engine: Callable[[Case, Device, Sequence[str]], Engine]

@@ -111,9 +111,7 @@ def rows(case: Case) -> list[Row]:
     for card in CARDS:
         name, step = f"on one {card.name}", seconds_of_step(numbers, card)
         rate = f"{numbers.n / step:.2g} particle-steps/s"
-        note = (
-            f"{rate}, predicted from {basis_of(numbers, card)}; no walls, bonds, samples or files"
-        )
+        note = f"{rate}, predicted from {basis_of(numbers, card)}; {WITHOUT}"
         if needed > card.memory:
             found.append((name, "too large", f"it has {size_text(card.memory)}"))
         else:
