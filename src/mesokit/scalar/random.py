@@ -28,8 +28,13 @@ VIRTUAL_VELOCITY = np.uint64(11)
 DIFFUSE_WALL = np.uint64(12)
 VIRTUAL_NUMBER = np.uint64(13)
 INITIAL_SOLUTES = np.uint64(14)
+INITIAL_BODIES = np.uint64(15)
+BODY_GAS_NUMBER = np.uint64(16)  # of virtual particles in bodies that move
+BODY_GAS_PLACE = np.uint64(17)
+BODY_GAS_VELOCITY = np.uint64(18)
+BODY_TUMBLE = np.uint64(19)
 # Where the numbers of what is no particle of the fluid begin.
-FIRST_VIRTUAL, FIRST_BEAD = 2**61, 2**62
+FIRST_BODY_GAS, FIRST_VIRTUAL, FIRST_BEAD = 2**60, 2**61, 2**62
 METHOD = np.uint64(128)  # to 255: for methods other than MPCD, whose runs never meet
 
 _LOW = np.uint64(0xFFFFFFFF)

@@ -40,14 +40,15 @@ def _fluid(case: Case) -> tuple[Kind, ...]:
 
 
 def fluid_volume(case: Case) -> float:
-    """Volume that walls leave to the fluid, less what beads exclude that push it away.
+    """Volume that walls and bodies leave to the fluid, less what beads exclude that push it away.
 
     The fluid has its density far from them then. Where they overlap they exclude less.
     """
-    solutes, volume = case.solutes, free_volume(case)
+    solutes, d = case.solutes, case.box.dimension
+    volume = free_volume(case) - sum(kind.number * kind.solid(d).volume for kind in case.bodies)
     if solutes is None or solutes.solvent_pair is None:
         return volume
-    return volume - solutes.beads * solutes.excluded_volume(case.box.dimension, case.fluid.kT)
+    return volume - solutes.beads * solutes.excluded_volume(d, case.fluid.kT)
 
 
 def bonded_pairs(case: Case) -> NDArray[np.int64]:

@@ -20,6 +20,7 @@ from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.shape import Wall
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.geometry.walls import solids
+from mesokit.method.mpcd.body import Body
 from mesokit.method.mpcd.checks import combinations
 from mesokit.method.mpcd.columns import columns
 from mesokit.method.mpcd.derived import build_up, heat_caveat, summary
@@ -93,6 +94,8 @@ def _check_ranks(case: Case, ranks: int) -> None:
     from mesokit.method.mpcd.engine.domains.blocks.tree import divided
     from mesokit.method.mpcd.engine.domains.domain import axes_to_cut
 
+    if case.bodies:
+        raise CaseError(f"bodies: not on {ranks} ranks yet; expected one rank")
     if case.solutes is not None and case.solutes.coupling == "potential":
         raise CaseError(
             f"solutes.coupling = 'potential': not on {ranks} ranks; expected one rank, or "
@@ -151,6 +154,7 @@ class Sections:
 
     fluid: Fluid = param(Fluid(), doc="the fluid")
     solutes: Solutes | None = param(None, doc="monomers and polymers in the fluid (none)")
+    bodies: Many[Body] = param((), doc="rigid bodies that move in the fluid, `[[bodies]]`")
     walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")
 
 

@@ -4,9 +4,11 @@ from typing import Any, NamedTuple
 
 from mesokit.geometry.protocol import Nothing
 from mesokit.geometry.solids.clearance import Held
+from mesokit.method.mpcd.engine.bodies.allocate import balancing_pull
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.engine.cpu.physics import Physics
 from mesokit.method.mpcd.engine.virtual.allocate import with_clearance
+from mesokit.method.mpcd.field.uniform import Uniform
 
 
 class Parameters(NamedTuple):
@@ -25,7 +27,7 @@ def parameters_of(numbers: Numbers, held: Held | None = None) -> Parameters:
     physics = Physics(
         rule=fluid.collision.among(rule, tuple(numbers.counts), fluid.mass),
         thermostat=fluid.thermostat.kernel(fluid.kT, numbers.least_energy),
-        field=fluid.force.kernel(numbers.case.box.size),
+        field=_field(numbers),
         solid=solid,
         masses=(numbers.heaviest,) if numbers.uniform else (),
         energy=numbers.energy,
@@ -39,6 +41,16 @@ def parameters_of(numbers: Numbers, held: Held | None = None) -> Parameters:
         stress_scale=numbers.units["stress"],
     )
     return Parameters(physics, (links, tables))
+
+
+def _field(numbers: Numbers) -> Any:
+    """The force on the fluid, and the uniform acceleration that balances forces on bodies."""
+    case, d = numbers.case, numbers.dimension
+    force, pull = case.fluid.force, balancing_pull(case) if case.bodies else ()
+    if pull:
+        given = force.uniform(d) or (0.0,) * d
+        force = Uniform([x + y for x, y in zip(given, pull, strict=True)])
+    return force.kernel(case.box.size)
 
 
 def _solid(numbers: Numbers, held: Held | None) -> tuple[Any, Any]:

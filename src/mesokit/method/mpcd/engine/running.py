@@ -58,6 +58,7 @@ class Running(ABC):
     memory: Any
     readings: Readings
     solutes: Any
+    bodies: Any = None
     n: int
     dimension: int
     box: Floats
@@ -136,6 +137,8 @@ class Running(ABC):
             refuse_broken(memory.faults, molecule.bond.longest, "particles", advice)
         if self.solutes is not None:
             self.solutes.check()
+        if self.bodies is not None:
+            self.bodies.check()
         if measure_stress:
             self.readings.find_stress()
 
@@ -198,6 +201,7 @@ class Running(ABC):
         self.check()
         return {
             **(self.solutes.state() if self.solutes else {}),
+            **(self.bodies.state() if self.bodies else {}),
             **self._state_of_particles(),
             "step": np.int64(self.step),
             **self.readings.state_of_walls(),
@@ -225,6 +229,8 @@ class Running(ABC):
         self.memory.put_wall_rates(state["wall_rates"])
         if self.solutes is not None:
             self.solutes.restore(dict(state))
+        if self.bodies is not None:
+            self.bodies.restore(dict(state))
 
     def balance(self) -> dict[str, Any]:
         """How the work was shared anew while it ran."""

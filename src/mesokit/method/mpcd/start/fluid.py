@@ -18,6 +18,7 @@ from mesokit.geometry.solids.contact import MARGIN
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.method.mpcd.start.arrays import OfFirst, rows_of
+from mesokit.method.mpcd.start.bodies import first_places, first_velocities
 from mesokit.method.mpcd.start.conformation import connected, drawn, nearest_of
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.start.growth import grown
@@ -164,9 +165,12 @@ def start(
         engine.solutes.begin(beads, bead_velocities)
         drifts.append(drift)
 
+    if case.bodies:
+        drifts.append(_begin_bodies(engine, at_rest))
+
     def made(first: int, last: int) -> tuple[Ids, Floats, Floats, NDArray[np.int32]]:
         ids = np.arange(first, last)
-        r = first_positions(numbers, ids, positions, beads)
+        r = first_positions(numbers, ids, positions, beads, engine.bodies)
         if not at_rest:
             v = np.asarray(velocities[first:last], float)
         else:
@@ -180,21 +184,45 @@ def start(
     engine.begin(made(*part) for part in parts)
 
 
-def first_positions(numbers: Numbers, ids: Ids, given: Any, beads: Any = None) -> Floats:
+def _begin_bodies(engine: Any, fluid_is_drawn: bool) -> Floats:
+    """Give the bodies their first state; the drift (d,) to take off the fluid, so that the whole is
+    at rest."""
+    case, bodies = engine.numbers.case, engine.bodies
+    places, turns = first_places(case, periods(engine.numbers))
+    v, spins = first_velocities(case, places, turns)
+    drift = np.zeros(engine.numbers.dimension)
+    given = any(kind.start.velocities is not None for kind in case.bodies)
+    fixed = any(kind.fixed for kind in case.bodies)
+    if fluid_is_drawn and not (given or fixed or case.box.sheared):
+        drift = bodies.masses @ v / (bodies.masses.sum() + engine.numbers.total_mass)
+        v -= drift
+    bodies.begin(places, turns, v, spins)
+    return drift
+
+
+def first_positions(
+    numbers: Numbers, ids: Ids, given: Any, beads: Any = None, bodies: Any = None
+) -> Floats:
     """Positions (n, d) of particles with these numbers, in a row and whole molecules: the given
-    ones, or drawn where there is no solid, and where the beads that act on the fluid leave room."""
+    ones, or drawn where there is no solid and no body, and where the beads that act on the fluid
+    leave room."""
     case, molecule = numbers.case, numbers.case.fluid.molecule
     if given is not None:
         places = np.asarray(given[ids[0] : ids[-1] + 1], float)
+        if bodies is not None and bodies.inside(places).any():
+            row = ids[0] + int(np.argmax(bodies.inside(places)))
+            raise RunError(f"fluid.start.positions: row {row} lies in a body")
         return places if molecule is None else connected(places, molecule, periods(numbers))
     if molecule is None:
         random = Draws(case.run.seed, INITIAL_POSITION, ids)
         places = random.units(numbers.dimension) * numbers.box
         among_solids = numbers.solids is not None and numbers.slit is None
-        left = np.arange(len(places) if among_solids else 0)
-        while len(left):  # those in a solid are drawn again
-            assert numbers.solids is not None
-            inside = numbers.solids.distance(places[left]) < MARGIN
+        left = np.arange(len(places) if among_solids or bodies is not None else 0)
+        while len(left):  # those in a solid or in a body are drawn again
+            inside = np.zeros(len(left), bool) if bodies is None else bodies.inside(places[left])
+            if among_solids:
+                assert numbers.solids is not None
+                inside |= numbers.solids.distance(places[left]) < MARGIN
             left, random = left[inside], random.of(inside)
             places[left] = random.units(numbers.dimension) * numbers.box
         return places if beads is None else out_of_beads(numbers, ids, places, beads)

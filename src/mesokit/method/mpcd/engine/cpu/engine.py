@@ -45,7 +45,7 @@ class CPU(Running):
         self.threads = Threads(threads)
         self.memory = Memory(self.numbers, threads, measures)
         self.readings = Readings(self.memory, self.threads)
-        self.solutes = self.readings.solutes
+        self.solutes, self.bodies = self.readings.solutes, self.readings.bodies
         self.n, self.dimension, self.box = self.numbers.n, self.numbers.dimension, self.numbers.box
         self.threads.compile_ahead(advance, self._course(0, 0), *self.memory.groups())
 

@@ -14,6 +14,7 @@ from mesokit.loops import layout
 from mesokit.loops.layout import LANES, zeros
 from mesokit.method.mpcd.engine.beads.allocate import allocate_beads
 from mesokit.method.mpcd.engine.beads.registers import bead_size
+from mesokit.method.mpcd.engine.bodies.allocate import allocate_bodies
 from mesokit.method.mpcd.engine.cell_gradient import NeighbourSums
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.groups import (
@@ -65,6 +66,9 @@ class Memory:
         if case.solutes is not None:
             embedded = embedded_of(case.solutes, numbers, threads)
             self.solutes = allocate_beads(case.solutes, self)._replace(embedded=embedded)
+        self.bodies: Any = ()
+        if case.bodies:
+            self.bodies = allocate_bodies(numbers, threads, self.numbers_taken)
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
         if domain is not None:
@@ -78,8 +82,8 @@ class Memory:
         return numbers.case.box.kernel(numbers.closed, time, numbers.timestep)
 
     def groups(self) -> tuple[Any, ...]:
-        """Physics, fluid, solutes and walls as the step takes them."""
-        return self._packing(self.physics, self.fluid, self.solutes, self.walls)
+        """Physics, fluid, solutes, bodies and walls as the step takes them."""
+        return self._packing(self.physics, self.fluid, self.solutes, self.bodies, self.walls)
 
     def _allocate(self) -> None:
         numbers, threads, d = self.numbers, self.threads, self.numbers.dimension

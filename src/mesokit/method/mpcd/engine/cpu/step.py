@@ -6,6 +6,10 @@ from mesokit.loops.clock import BEADS, CELLS, FINISH, START, SWEEP, lap
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.coupling import answer_beads, join_beads
 from mesokit.method.mpcd.engine.beads.flight import move_solutes
+from mesokit.method.mpcd.engine.bodies.gas import draw_all_gas, take_recoil
+from mesokit.method.mpcd.engine.bodies.hits import reflect_all
+from mesokit.method.mpcd.engine.bodies.motion import begin_step
+from mesokit.method.mpcd.engine.bodies.sweep import stream_around_bodies
 from mesokit.method.mpcd.engine.cell_gradient import fill_neighbour_sums
 from mesokit.method.mpcd.engine.cpu.collide import collide_cells
 from mesokit.method.mpcd.engine.cpu.grid import moved_grid
@@ -34,16 +38,50 @@ from mesokit.method.mpcd.engine.virtual.one_by_one import (
 )
 from mesokit.method.mpcd.engine.virtual.particles import drawn_per_cell
 from mesokit.method.mpcd.engine.virtual.per_cell import fill_cells, recoil_per_cell
+from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import Counter, grid_shift
 
 
 @by_type
-def stream(worker, now, physics, fluid, beads):
-    """The fluid's part (see `cpu.sweep.stream_fluid`); around solutes that act by a potential."""
+def stream(worker, now, physics, fluid, beads, bodies):
+    """The fluid's part (see `cpu.sweep.stream_fluid`); around bodies that move, and around solutes
+    that act by a potential."""
+    if len(bodies) > 0:
+        return lambda worker, now, physics, fluid, beads, bodies: stream_around_bodies(
+            worker, now, physics, fluid, bodies
+        )
     if is_embedded(beads):
-        return lambda *given: stream_around(*given)
-    return lambda worker, now, physics, fluid, beads: stream_fluid(worker, now, physics, fluid)
+        return lambda worker, now, physics, fluid, beads, bodies: stream_around(
+            worker, now, physics, fluid, beads
+        )
+    return lambda worker, now, physics, fluid, beads, bodies: stream_fluid(
+        worker, now, physics, fluid
+    )
+
+
+@where(bodies=len)
+def move_bodies(worker, now, physics, bodies):
+    """Rigid motion of bodies t -> t + dt, by all forces but those of the fluid."""
+    begin_step(worker, now, physics, bodies)
+
+
+@where(bodies=len)
+def hit_bodies(worker, now, physics, fluid, bodies):
+    """Flight of the particles near bodies; their hits, all of a body as one reflection."""
+    reflect_all(worker, now, physics, fluid, bodies)
+
+
+@where(bodies=len)
+def fill_bodies(worker, now, physics, fluid, bodies):
+    """Virtual particles at t + dt in the cells that bodies cut."""
+    draw_all_gas(worker, now, physics, fluid, bodies)
+
+
+@where(bodies=len)
+def recoil_bodies(worker, now, physics, fluid, bodies):
+    """Give bodies what the collision gives their virtual particles."""
+    take_recoil(worker, now, physics, fluid, bodies)
 
 
 @by_type
@@ -79,13 +117,16 @@ def recoil(worker, now, physics, fluid, walls):
 
 
 @inner
-def step(worker, now, physics, fluid, beads, walls):
+def step(worker, now, physics, fluid, beads, bodies, walls):
     """One collision interval: r, v from t to t + dt."""
-    stream(worker, now, physics, fluid, beads)  # v: the collision at t; r, v: t -> t + dt; sums
+    move_bodies(worker, now, physics, bodies)  # their rigid motion t -> t + dt
+    stream(worker, now, physics, fluid, beads, bodies)  # v: collision at t; r, v: t + dt; sums
     lap(worker, SWEEP)
+    hit_bodies(worker, now, physics, fluid, bodies)  # particles near bodies: hits, t -> t + dt
     move_beads(worker, now, physics, fluid, beads)  # the same for solutes, in sub-steps
     lap(worker, BEADS)
     fill_walls(worker, now, physics, fluid, walls)  # virtual particles at t + dt
+    fill_bodies(worker, now, physics, fluid, bodies)  # the same in bodies
     barrier(worker)
     lap(worker, SWEEP)
     exchange_sums(worker, now, physics, fluid, beads)  # ranks: sums to the owners of cells
@@ -100,35 +141,36 @@ def step(worker, now, physics, fluid, beads, walls):
     barrier(worker)
     lap(worker, CELLS)
     recoil(worker, now, physics, fluid, walls)  # what the collision takes from virtual particles
+    recoil_bodies(worker, now, physics, fluid, bodies)
 
 
 @kernel
-def advance(worker, course, physics, fluid, beads, walls):
+def advance(worker, course, physics, fluid, beads, bodies, walls):
     """Run some steps; velocities are those after the collision of the last when it returns."""
     lap(worker, START)
     now = Now(Counter(course.seed, course.done), course.box, course.grid, course.grid, 0)
     n = 0
     while n < course.steps and room_left(fluid):
-        number, now = interval(worker, course, now, physics, fluid, beads, walls, n)
+        number, now = interval(worker, course, now, physics, fluid, beads, bodies, walls, n)
         n += number
         count_molecules(fluid)  # ranks: after a migration
     note_done(worker, fluid, n)
     if n > 0:
         now = last_collision(course, now)
-        stream(worker, now, physics, fluid, beads)
+        stream(worker, now, physics, fluid, beads, bodies)
         move_beads(worker, now, physics, fluid, beads)
         barrier(worker)
         lap(worker, FINISH)
 
 
 @inner
-def interval(worker, course, now, physics, fluid, beads, walls, n):
+def interval(worker, course, now, physics, fluid, beads, bodies, walls, n):
     """Steps from the nth on, all or up to the next one after which particles change ranks."""
     first, going = n, True
     while n < course.steps and going:
         now = next_step(course, now, physics, n)
         field = field_of_step(physics, course.done + n)
-        step(worker, now, with_field(physics, field), fluid, beads, walls)
+        step(worker, now, with_field(physics, field), fluid, beads, bodies, walls)
         going = migrate(worker, now, physics, fluid)
         n += 1
     return n - first, now

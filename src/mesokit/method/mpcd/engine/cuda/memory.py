@@ -56,6 +56,7 @@ class DeviceMemory:
         if numbers.virtual != "none":
             self.walls = WallMemory(numbers, device, self.room, "walls" in self.measures)
         self.solutes, self.beads = self._solutes()
+        self.bodies = ()  # which devices refuse
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
 

@@ -9,3 +9,5 @@ def refused(case: Case, ranks: int = 1) -> Iterator[str]:
     """For each thing in a case that devices cannot do, what is said of the device."""
     if ranks > 1:
         yield f"not on {ranks} ranks yet; expected one rank, or --device cpu"
+    if case.bodies:
+        yield "no bodies that move yet; expected --device cpu"

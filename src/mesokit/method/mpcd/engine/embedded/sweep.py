@@ -5,28 +5,16 @@ Where solutes collide with the fluid, this costs nothing: it is another pass (se
 
 import numpy as np
 
-from mesokit.geometry.protocol import leaps
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in, sums_length
-from mesokit.method.mpcd.collision.protocol import contribute
+from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
 from mesokit.method.mpcd.engine.cpu import stages
-from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, STREAM
-from mesokit.method.mpcd.engine.cpu.near_solids import FEW, forget, look_around_strip
-from mesokit.method.mpcd.engine.cpu.physics import has_solid
+from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
-from mesokit.method.mpcd.engine.cpu.strips.rows import (
-    add_values,
-    lane_mass,
-    load_values,
-    store_particle,
-)
-from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
+from mesokit.method.mpcd.engine.cpu.strips.one import put_one
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
 from mesokit.method.mpcd.engine.embedded.near import choose_near, find_beads
 from mesokit.method.mpcd.engine.embedded.state import COUNT
-from mesokit.method.mpcd.engine.where import where
-from mesokit.scalar.jit import optional, scalar
-from mesokit.scalar.vector import added_scaled
 
 
 @stage
@@ -79,31 +67,9 @@ def put_back(worker, now, physics, fluid, beads):
     """Bring the particles that were near beads back to their strips, and into their cells."""
     if now.flags & STREAM:
         (embedded,) = beads.embedded
-        for n in range(embedded.number[worker.thread, COUNT]):
-            put_one_back(worker, now, physics, fluid, embedded, n)
-
-
-@where(physics=has_solid)
-def forget_leap(physics, room, lane, displacement):
-    """Forget the clear distance where a particle went farther than a stride."""
-    if leaps(physics.solid, displacement):
-        forget(room, lane // LANES, 1 << (lane % LANES // FEW))
-
-
-@scalar
-def put_one_back(worker, now, physics, fluid, embedded, n):
-    """Do the work of `bin_strip` and `add_strip` for one particle."""
-    particles, zero, lane = fluid.particles, physics.zero, embedded.lane[worker.thread, n]
-    s, i, d, at = lane // LANES, lane % LANES, len(zero), np.uint64(n * len(zero))
-    r = load_values(embedded.r[worker.thread], at, zero)
-    v = load_values(embedded.v[worker.thread], at, zero)
-    strip, sums = particles.data[strip_at(s, particles.rows)], fluid.cells.sums[worker.thread]
-    start = load_values(embedded.start[worker.thread], at, zero)
-    forget_leap(physics, fluid.room, lane, added_scaled(r, -1.0, start))
-    m, key = lane_mass(physics.masses, strip, i, 2 * d), (particles.ident[lane], 0)
-    kept, own = contribute(physics.rule, now.counter, key, m, v, in_cell(r, now.grid))
-    particles.cell[lane] = cell_index(r, now.grid)
-    store_particle(strip, i, 0, r + kept)
-    place = np.uint64(np.uint32(particles.cell[lane])) * np.uint64(sums_length(len(physics.terms)))
-    sums[place] += optional(tally(physics.energy, m, v), 1)
-    add_values(sums, place + np.uint64(1), terms_of(physics, m, v, own))
+        thread, zero = worker.thread, physics.zero
+        for n in range(embedded.number[thread, COUNT]):
+            at = np.uint64(n * len(zero))
+            r, v = load_values(embedded.r[thread], at, zero), load_values(embedded.v[thread], at, zero)
+            start = load_values(embedded.start[thread], at, zero)
+            put_one(worker, now, physics, fluid, embedded.lane[thread, n], start, r, v)

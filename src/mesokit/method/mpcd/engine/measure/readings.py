@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from mesokit.case.box import SLIDING
 from mesokit.loops.layout import LANES, SCRATCH_ROW, strips_for, sums_length, zeros
 from mesokit.method.mpcd.engine.beads.readings import SoluteReadings
+from mesokit.method.mpcd.engine.bodies.readings import BodyReadings
 from mesokit.method.mpcd.engine.cpu.memory import Floats
 from mesokit.method.mpcd.engine.measure import sums as measure
 from mesokit.scalar.fixed_point import ROUNDER_BITS, added_halves, halves, joined
@@ -42,6 +43,7 @@ class Readings:
         self.stress: dict[str, Floats] = {}
         self.counts_solutes = True  # whether sums take the beads of solutes from here
         self.solutes = SoluteReadings(memory) if memory.solutes else None
+        self.bodies = BodyReadings(memory) if memory.bodies else None
 
     @property
     def _vectors(self) -> tuple[tuple, tuple]:
@@ -53,10 +55,12 @@ class Readings:
         self._seen.clear()
 
     def totals(self) -> tuple[int, Floats, float]:
-        """Number of particles, momentum (d,) and kinetic energy, beads of solutes included."""
+        """Number of particles, momentum (d,) and kinetic energy, beads of solutes and bodies included."""
         number, sums = self.n, self.motion()
         if self.solutes is not None:
             number, sums = number + self.solutes.shape[0], sums + self.solutes.motion()
+        if self.bodies is not None:
+            number, sums = number + self.bodies.number, sums + self.bodies.motion()
         return number, sums[:-1], 0.5 * float(sums[-1])
 
     def motion(self) -> Floats:

@@ -1,0 +1,234 @@
+"""Rigid bodies that move in the fluid: equal ones of a kind, and what acts on them."""
+
+from __future__ import annotations
+
+import functools
+import math
+from abc import ABC, abstractmethod
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import field_validator
+
+from mesokit.case.component import component, option, param, show
+from mesokit.case.describe.hints import Either, Many
+from mesokit.case.registry import family
+from mesokit.geometry.region import Region
+from mesokit.method.mpcd.body.inertia import Solid, solid_of
+
+Floats = NDArray[np.float64]
+Direction = Literal["x", "y", "z", "orientation"]
+
+
+@component
+class GapPotential:
+    """Repulsion of two surfaces, or of a surface and a wall, by the gap between them.
+
+    It is the potential of Weeks, Chandler and Andersen (1971) of the gap: it diverges at contact
+    and ends at `range`."""
+
+    depth: float = param(1.0, doc="energy scale", unit="kT", gt=0, le=1e6)
+    range: float = param(0.5, doc="gap at which it ends", unit="a", ge=0.25, le=10)
+
+
+@component
+class BodyTrap:
+    """Springs that hold each body of a kind: to a place, to an orientation, or to both."""
+
+    k: float = param(0.0, doc="stiffness of the spring to a place", unit="kT/a^2", ge=0, le=1e9)
+    centre: Many[float] | None = param(
+        None, doc="that place (where each body starts unless said)", unit="a"
+    )
+    angular: float = param(
+        0.0,
+        doc="stiffness of the spring that turns the body's axis x to a direction",
+        unit="kT",
+        ge=0,
+        le=1e9,
+    )
+    direction: Many[float] | None = param(None, doc="that direction (axis x of the box)")
+
+    def __post_init__(self) -> None:
+        if self.k == 0 and self.angular == 0:
+            raise ValueError("k: missing; a trap needs k, angular or both")
+        if self.direction is not None and not any(self.direction):
+            raise ValueError(f"direction = {show(self.direction)}: expected a vector other than 0")
+
+
+@component
+class Squirming:
+    """Velocity of a surface along itself, by which a body swims.
+
+    At an angle theta from the body's axis x it is B1 sin theta + B2 sin theta cos theta on a
+    sphere, B1 sin theta + B2 sin 2 theta on a disk, towards larger angles, and B1 t_x along the
+    tangent t of a spheroid or an ellipse (Lighthill 1952, Blake 1971, Keller and Wu 1977). A
+    pusher has a B2 of the other sign than B1."""
+
+    B1: float = param(0.0, doc="first mode, which moves the body", unit="a/time", ge=-1e3, le=1e3)
+    B2: float = param(0.0, doc="second mode, which stirs the fluid", unit="a/time", ge=-1e3, le=1e3)
+    tumble_rate: float = param(
+        0.0, doc="mean number of turns in a unit of time (run and tumble)", unit="1/time", ge=0
+    )
+
+    def __post_init__(self) -> None:
+        if self.B1 == 0 and self.B2 == 0:
+            raise ValueError("B1: missing; a squirmer needs B1, B2 or both")
+
+
+@component
+class BodyStart:
+    """First places and orientations: drawn without overlap, on a lattice, or given."""
+
+    rule: Literal["random", "lattice", "given"] = param(
+        "random", doc="'random' draws places without overlap, 'lattice' is a square or cubic one"
+    )
+    positions: Many[tuple[float, ...]] | None = param(
+        None, doc="a row for each body, with rule = 'given'", unit="a"
+    )
+    orientations: Many[tuple[float, ...]] | None = param(
+        None,
+        doc="a row for each body: quaternion w, x, y, z, in 2D the angle in degrees (drawn; on a "
+        "lattice, and with given positions, those of the box)",
+    )
+    velocities: Many[tuple[float, ...]] | None = param(
+        None, doc="a row for each body (drawn unless said)", unit="a/time"
+    )
+
+    def __post_init__(self) -> None:
+        if (self.positions is not None) != (self.rule == "given"):
+            if self.positions is None:
+                raise ValueError("positions: missing; rule = 'given' needs them")
+            raise ValueError("positions: only with rule = 'given'")
+        for row in self.orientations or ():
+            if len(row) == 4 and abs(math.fsum(x * x for x in row) - 1.0) > 1e-6:
+                raise ValueError(f"orientations: {show(row)} is no unit quaternion")
+
+
+@family("body", "shape", "mesokit.body")
+@component
+class Body(ABC):
+    """A kind of rigid bodies that move in the fluid."""
+
+    dimensions = (2, 3)
+    squirms = False  # whether its surface may have a `swim`
+
+    number: int = option(default=1, doc="bodies of this kind", kw_only=True, ge=1, le=2**24)
+    name: str | None = option(
+        default=None,
+        doc="name in the results (shape and number unless said)",
+        kw_only=True,
+        min_length=2,
+    )
+    density: float | None = option(
+        default=None,
+        doc="mass per volume of the body (that of the fluid unless said)",
+        kw_only=True,
+        unit="m/a^d",
+        gt=0,
+        le=1e9,
+    )
+    mass: float | None = option(
+        default=None, doc="mass of the body, instead of a density", kw_only=True, unit="m", gt=0
+    )
+    surface: Literal["no-slip", "slip"] = option(
+        default="no-slip",
+        doc="'no-slip' bounces particles back, 'slip' reflects them like a mirror",
+        kw_only=True,
+    )
+    virtual: Literal["fill", "none"] = option(
+        default="fill",
+        doc="virtual particles in the cells that the surface cuts: 'fill' the inside with a gas at "
+        "the body's velocity, or 'none' (a slip surface has none)",
+        kw_only=True,
+    )
+    force: Many[float] | None = option(
+        default=None, doc="constant force on each", kw_only=True, unit="kT/a"
+    )
+    torque: Either[float | None, float] = option(
+        default=None,
+        doc="constant torque on each: a number in 2D, a vector in 3D",
+        kw_only=True,
+        unit="kT",
+    )
+    frame: Literal["box", "body"] = option(
+        default="box", doc="whose axes force and torque are along", kw_only=True
+    )
+    counter_force: bool = option(
+        default=False,
+        doc="accelerate all fluid and bodies uniformly so that their momentum stays",
+        kw_only=True,
+    )
+    fixed: Many[Direction] = option(
+        default=(),
+        doc="what does not move: any of 'x', 'y', 'z' (its place), 'orientation'",
+        kw_only=True,
+    )
+    hinge: Many[float] | None = option(
+        default=None, doc="axis of the box about which alone it turns", kw_only=True
+    )
+    trap: BodyTrap | None = option(default=None, doc="springs that hold it", kw_only=True)
+    interaction: GapPotential | None = option(
+        default=GapPotential(),
+        doc="repulsion of bodies and walls by the gap; null for none",
+        kw_only=True,
+    )
+    swim: Squirming | None = option(
+        default=None, doc="velocity of its surface, by which it swims", kw_only=True
+    )
+    start: BodyStart = option(
+        default=BodyStart(), doc="first places, orientations, velocities", kw_only=True
+    )
+
+    @field_validator("fixed")
+    @classmethod
+    def _each_once(cls, fixed: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(name for name in ("x", "y", "z", "orientation") if name in fixed)
+
+    def __post_init__(self) -> None:
+        if self.mass is not None and self.density is not None:
+            raise ValueError("density: not with mass; give one of them")
+        if self.hinge is not None and not any(self.hinge):
+            raise ValueError(f"hinge = {show(self.hinge)}: expected a vector other than 0")
+        if self.hinge is not None and "orientation" in self.fixed:
+            raise ValueError("hinge: not with fixed = 'orientation', which never turns")
+        if self.swim is not None and not self.squirms:
+            raise ValueError("swim: only of a sphere, disk, spheroid or ellipse")
+        if self.swim is not None and self.surface == "slip":
+            raise ValueError("swim: not with surface = 'slip', which drags no fluid along")
+
+    @abstractmethod
+    def region(self) -> Region:
+        """Its parts in its own frame, each a convex primitive."""
+
+    def solid(self, dimension: int) -> Solid:
+        """Volume, inertia and parts about the centre of mass, in 2D or 3D."""
+        return _solid(self.region(), dimension == 2)
+
+    def mass_in(self, dimension: int, fluid_density: float) -> float:
+        """Its mass, in a fluid of this mass per volume."""
+        if self.mass is not None:
+            return self.mass
+        return (self.density or fluid_density) * self.solid(dimension).volume
+
+
+@functools.lru_cache(maxsize=64)
+def _solid(region: Region, planar: bool) -> Solid:
+    return solid_of(region, planar)
+
+
+class Named(NamedTuple):
+    """A kind of bodies and its name."""
+
+    name: str
+    kind: Any
+
+
+def named(bodies: tuple[Any, ...]) -> list[Named]:
+    """All kinds with their names: given, or shape and number."""
+    numbers: dict[str, int] = {}
+    found = []
+    for kind in bodies:
+        number = numbers[kind.shape] = numbers.get(kind.shape, 0) + 1
+        found.append(Named(kind.name or f"{kind.shape}-{number}", kind))
+    return found

@@ -1,0 +1,20 @@
+"""A sphere that moves in the fluid."""
+
+from typing import ClassVar, Literal
+
+from mesokit.case.component import component, param, tag
+from mesokit.geometry.region import Region, ball
+from mesokit.method.mpcd.body.protocol import Body
+
+
+@component
+class SphereBody(Body):
+    """A sphere (3D)."""
+
+    dimensions: ClassVar[tuple[int, ...]] = (3,)
+    squirms = True
+    shape: Literal["sphere"] = tag("sphere")
+    radius: float = param(doc="its radius", unit="a", gt=0)
+
+    def region(self) -> Region:
+        return ball((0.0,) * 3, self.radius)

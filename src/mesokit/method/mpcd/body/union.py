@@ -1,0 +1,43 @@
+"""Several shapes as one body that moves in the fluid."""
+
+from typing import ClassVar, Literal
+
+from mesokit.case.component import component, name_of, param, tag
+from mesokit.case.describe.hints import Many
+from mesokit.geometry import region
+from mesokit.geometry.region import Region, Room
+from mesokit.geometry.shape_protocol import Simple
+from mesokit.method.mpcd.body.protocol import Body
+
+KINDS = ("ball", "capsule", "brick", "ellipsoid")  # of which the inertia is known
+
+
+@component
+class UnionBody(Body):
+    """Everything that is in any of its parts: a dumbbell, an L, a rotor.
+
+    Parts are shapes of walls, placed in a frame of the body. They are moved so that the centre of
+    mass is the origin. Where they overlap, volume and inertia are sampled."""
+
+    dimensions: ClassVar[tuple[int, ...]] = (2, 3)
+    shape: Literal["union"] = tag("union")
+    parts: Many[Simple] = param(doc="shapes, each in the body's frame", min_length=1)
+
+    def __post_init__(self) -> None:
+        super(UnionBody, self).__post_init__()  # noqa: UP008  the decorator makes a new class
+        for i, part in enumerate(self.parts, start=1):
+            if part.fluid == "inside":
+                raise ValueError(f"parts[#{i}].fluid = 'inside': expected a solid")
+        for i, part in enumerate(self.parts, start=1):
+            kinds = {one.kind for term in self._body(part) for one in term}
+            if not kinds <= set(KINDS):
+                raise ValueError(
+                    f"parts[#{i}].shape = {name_of(part)!r}: not part of a body that moves"
+                )
+
+    def _body(self, part: Simple) -> Region:
+        d = 2 if part.dimensions == (2,) else 3
+        return part.body(Room((1,) * d, (False,) * d))
+
+    def region(self) -> Region:
+        return region.union(self._body(part) for part in self.parts)

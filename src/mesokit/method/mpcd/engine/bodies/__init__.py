@@ -1,0 +1,1 @@
+"""Rigid bodies that move in the fluid: their motion, hits of particles, virtual particles."""

@@ -1,0 +1,214 @@
+"""The memory of bodies, made when a case is built (shapes: `state.py`)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.case import Case
+from mesokit.geometry.solids.solids import Solids
+from mesokit.loops.layout import LANES, zeros
+from mesokit.method.mpcd.body.protocol import Body, Squirming
+from mesokit.method.mpcd.engine.bodies import state
+from mesokit.method.mpcd.engine.bodies.state import MovingBodies
+from mesokit.method.mpcd.engine.cpu.grid import Grid
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
+from mesokit.scalar.pointer import address
+
+FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
+NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a run
+SKIN = 0.4  # cells
+ROOM = 2.0  # times as many particles near bodies as there are on average
+PHASE = 0.1  # of the fastest motion of bodies, in radians per sub-step
+MASS_BITS = 40
+Floats = NDArray[np.float64]
+
+
+def masses_of(case: Case) -> Floats:
+    """Mass of a body of each kind."""
+    d, density = case.box.dimension, mass_density(case)
+    return np.array([kind.mass_in(d, density) for kind in case.bodies])
+
+
+def mass_density(case: Case) -> float:
+    """Mass of the fluid per volume."""
+    return float(sum(kind.density * kind.mass for kind in case.fluid.kinds))
+
+
+def balancing_pull(case: Case) -> tuple[float, ...]:
+    """The uniform acceleration of everything that balances forces on bodies; () for none."""
+    if not any(kind.counter_force for kind in case.bodies):
+        return ()
+    fluid = sum(kind.mass * kind.number for kind in case.groups[0].kinds)
+    masses = masses_of(case)
+    numbers = np.array([kind.number for kind in case.bodies])
+    push = np.zeros(case.box.dimension)
+    for kind in case.bodies:
+        if kind.counter_force and kind.force is not None:
+            push += kind.number * np.array(kind.force)
+    return tuple((-push / (fluid + float(masses @ numbers))).tolist())
+
+
+def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
+    """The numbers of a kind of bodies, for compiled code."""
+    d, row = case.box.dimension, np.zeros(state.KIND_COLUMNS)
+    solid = kind.solid(d)
+    row[state.MASS] = mass
+    for k in range(d):
+        free = "xyz"[k] not in kind.fixed
+        row[state.INVERSE + k] = free / mass
+        row[state.ROOT + k] = free / math.sqrt(mass)
+    inertia = mass / solid.volume * solid.moments
+    turns = "orientation" not in kind.fixed
+    inverse, root = np.zeros((3, 3)), np.zeros((3, 3))
+    if d == 2:
+        inertia = np.diag([0.0, 0.0, inertia[2, 2]])
+        inverse[2, 2], root[2, 2] = turns / inertia[2, 2], turns / math.sqrt(inertia[2, 2])
+    elif turns:
+        values, axes = np.linalg.eigh(inertia)
+        inverse = axes @ np.diag(1.0 / values) @ axes.T
+        root = axes @ np.diag(values**-0.5) @ axes.T
+    row[state.INERTIA : state.INERTIA + 6] = six(inertia)
+    row[state.INVERSE_INERTIA : state.INVERSE_INERTIA + 6] = six(inverse)
+    row[state.ROOT_INERTIA : state.ROOT_INERTIA + 6] = six(root)
+    row[state.RADIUS] = solid.radius
+    row[state.IS_BALL] = len(solid.parts) == 1 and solid.parts[0].kind == "ball"
+    row[state.IS_SLIP] = kind.surface == "slip"
+    fluid = mass_density(case) * solid.volume
+    if kind.virtual == "fill" and kind.surface != "slip":
+        row[state.FILLED] = min(1.0, mass / fluid)
+    if kind.hinge is not None and d == 3:
+        row[state.HINGED] = 1.0
+        row[state.HINGE : state.HINGE + 3] = np.array(kind.hinge) / math.hypot(*kind.hinge)
+    row[state.PUSH : state.PUSH + d] = kind.force or (0.0,) * d
+    twist = kind.torque if isinstance(kind.torque, tuple) else (0.0, 0.0, kind.torque or 0.0)
+    row[state.TWIST : state.TWIST + 3] = twist
+    row[state.IN_BODY_FRAME] = kind.frame == "body"
+    kT = case.fluid.kT
+    if kind.trap is not None:
+        row[state.SPRING] = kind.trap.k * kT
+        row[state.ANGULAR_SPRING] = kind.trap.angular * kT
+        towards = kind.trap.direction or (1.0, 0.0, 0.0)[:d]
+        row[state.TOWARDS : state.TOWARDS + d] = np.array(towards) / math.hypot(*towards)
+    if kind.interaction is not None:
+        row[state.DEPTH], row[state.RANGE] = kind.interaction.depth * kT, kind.interaction.range
+    if isinstance(kind.swim, Squirming):
+        row[state.B1], row[state.B2] = kind.swim.B1, kind.swim.B2
+        row[state.TUMBLES] = kind.swim.tumble_rate
+    row[state.FIRST_PART], row[state.PARTS_END] = first_part, first_part + len(solid.parts)
+    row[state.DISPLACED] = fluid
+    row[state.HALF_LENGTH] = half_length(solid.parts[0])
+    return row
+
+
+def half_length(part: Any) -> float:
+    """From the centre of a squirmer to the end of its axis."""
+    return float(part.numbers[6]) if part.kind in ("ball", "ellipsoid") else 1.0
+
+
+def six(matrix: Floats) -> Floats:
+    """A symmetric matrix as xx, yy, zz, xy, xz, yz."""
+    return matrix[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+
+
+def needed_substeps(case: Case) -> int:
+    """Sub-steps in which the stiffest spring or gap turns by PHASE at most."""
+    fast, kT = 0.0, case.fluid.kT
+    for kind, mass in zip(case.bodies, masses_of(case), strict=True):
+        if kind.interaction is not None:
+            # the curvature where two bodies have one kT of the potential
+            s = kind.interaction.range / 2 ** (1 / 6)
+            fast = max(fast, 100.0 * kind.interaction.depth * kT / s**2 * 2.0 / mass)
+        if kind.trap is not None:
+            fast = max(fast, kind.trap.k * kT / mass)
+            solid = kind.solid(case.box.dimension)
+            fast = max(fast, kind.trap.angular * kT / (mass * solid.moments[2, 2] / solid.volume))
+    return max(1, math.ceil(math.sqrt(fast) * case.fluid.timestep / PHASE))
+
+
+def allocate_bodies(numbers: Numbers, threads: int, waste: int) -> MovingBodies:
+    """Bodies at rest at 0, and room for all that their steps need."""
+    case, d = numbers.case, numbers.dimension
+    fluid, box = case.fluid, case.box
+    masses, kinds, parts = masses_of(case), [], []
+    for kind, mass in zip(case.bodies, masses.tolist(), strict=True):
+        kinds.append(row_of(kind, mass, case, len(parts)))
+        parts += kind.solid(d).parts
+    kind_of = np.repeat(np.arange(len(kinds)), [kind.number for kind in case.bodies])
+    table = np.array([part.numbers for part in parts])
+    n, number = len(kind_of), np.array([kind.number for kind in case.bodies])
+    thermal = fluid.timestep * math.sqrt(fluid.kT / min(numbers.masses_of_kinds))
+    solids: Solids | None = numbers.solids
+    diffuse = any(body.surface.rule == "diffuse" for body in (solids.bodies if solids else []))
+    further = 2.0 * fluid.timestep * fastest_surface(case) + NEVER * thermal * diffuse
+    shear = box.largest_rate * float(box.size[1]) * fluid.timestep
+    travel = FAST * thermal + further + 0.5 * shear
+    radii = np.array([kind.solid(d).radius for kind in case.bodies])
+    shell = surface_bound(radii, d) * (2.0 * travel + 2.0)
+    most = int(min(numbers.n, ROOM * numbers.density * float(number @ shell) + 1000))
+    filled = float(number @ surface_bound(radii + 1.0, d)) * 2.0 * numbers.density
+    most_gas = int(ROOM * filled / threads + 0.2 * filled + 2000)
+    cells = tuple(float(c) for c in numbers.cells)
+    zero = (0.0,) * d
+    near = numbers.number_of_cells + 1
+    walls = () if solids is None else (wall_of_gaps(numbers, case),)
+    heaviest = max(numbers.masses_of_kinds)
+    return MovingBodies(
+        rows=np.zeros((n, state.COLUMNS)),
+        kinds=np.array(kinds),
+        kind=kind_of.astype(np.int64),
+        part_code=np.array([part.code for part in parts], np.int64),
+        table=table,
+        parts=address(table),
+        mass_scale=2.0 ** (MASS_BITS - math.ceil(math.log2(heaviest))),
+        cells=numbers.number_of_cells,
+        density=numbers.density,
+        substeps=needed_substeps(case),
+        lever=2.0 ** math.ceil(math.log2(max(radii.max(), 1.0))),
+        skin=SKIN,
+        reach=travel + state.SPARE + 0.5 * SKIN + shear,
+        travel=travel,
+        further=further,
+        twice=1,
+        grid=Grid(zero, zero, cells, tuple(1.0 / c for c in cells)),
+        near_count=np.zeros(near, np.int32),
+        near=np.zeros((near, state.MOST_NEAR_CELL), np.int32),
+        partner_count=np.zeros(n, np.int32),
+        partners=np.zeros((n, state.MOST_PARTNERS), np.int32),
+        values=zeros((threads, most, state.NEAR_COLUMNS)),
+        numbers=zeros((threads, most, state.NEAR_NUMBERS), np.int64),
+        sums=zeros((threads, n, state.SUMS), np.int64),
+        taken=zeros((threads, n, 6), np.int64),
+        gas=zeros((threads, most_gas, state.GAS_COLUMNS)),
+        gas_mass=fluid.mass,
+        gas_number=zeros((threads, most_gas), np.int64),
+        gas_cell=zeros((threads, most_gas), np.int64),
+        gas_body=zeros((threads, most_gas), np.int64),
+        counters=zeros((threads, state.COUNTERS), np.int64),
+        work=zeros((threads, state.WORK)),
+        chosen=zeros((threads, LANES), np.int64),
+        waste=zeros((threads, waste), np.int64),
+        solid=walls,
+        pull=balancing_pull(case),
+    )
+
+
+def surface_bound(radius: Floats, d: int) -> Floats:
+    """Surface of balls of these radii."""
+    return 2.0 * math.pi * radius if d == 2 else 4.0 * math.pi * radius**2
+
+
+def wall_of_gaps(numbers: Numbers, case: Case) -> Any:
+    """The solids as the potential of gaps sees them: found as far as that reaches."""
+    if numbers.slit is not None:
+        return numbers.slit.kernel(case.box.size)
+    d = numbers.dimension
+    reach = max(
+        kind.solid(d).radius + (kind.interaction.range if kind.interaction else 0.0)
+        for kind in case.bodies
+    )
+    assert numbers.solids is not None
+    return numbers.solids.reaching(reach)

@@ -1,0 +1,258 @@
+"""Virtual particles in the cells that bodies cut: the gas of a body.
+
+The gas has the density of the fluid and moves with the body. What the body's own rigid motion
+already has of the thermal noise is taken out of the drawn velocities. So body and gas have the
+thermal noise of the body once, and its temperature is exact.
+"""
+
+import math
+
+import numpy as np
+
+from mesokit.case.box import SLIDING, fold
+from mesokit.kernels.part import stage
+from mesokit.loops.layout import record_length, share, sums_length
+from mesokit.loops.threads import barrier
+from mesokit.method.mpcd.collision.protocol import collide, contribute
+from mesokit.method.mpcd.engine.bodies import state
+from mesokit.method.mpcd.engine.bodies.hits import (
+    add_hit,
+    floats,
+    normal_at,
+    physics_scales,
+    take_impulses,
+    wall_velocity,
+)
+from mesokit.method.mpcd.engine.bodies.linear import solve_noise, unlevered
+from mesokit.method.mpcd.engine.bodies.near import note, slides
+from mesokit.method.mpcd.engine.bodies.state import (
+    B1,
+    B2,
+    CHANGE,
+    FILLED,
+    FOUR,
+    GAS_ARM,
+    GAS_COUNT,
+    GAS_KEPT,
+    GAS_PLACE,
+    GAS_SPEED,
+    GAS_VELOCITY,
+    IS_BALL,
+    PLACE,
+    RADIUS,
+    SUMS,
+    THREE,
+    TOO_MANY,
+    TURN,
+    load,
+    of_kind,
+    store,
+    swept,
+    turned_back,
+    with_shear,
+)
+from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
+from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
+from mesokit.method.mpcd.engine.cpu.strips.rows import add_values, load_values
+from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
+from mesokit.method.mpcd.engine.where import where
+from mesokit.scalar.fixed_point import add_integers, added_quanta, integers
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import optional, scalar, seldom
+from mesokit.scalar.poisson import poisson_number
+from mesokit.scalar.random import (
+    BODY_GAS_NUMBER,
+    BODY_GAS_PLACE,
+    BODY_GAS_VELOCITY,
+    FIRST_BODY_GAS,
+    normals,
+    unit_open,
+    words,
+)
+from mesokit.scalar.vector import added, added_scaled, dot, first, outer, scaled
+
+MOST_OF_CELL = 2**10  # virtual particles of a body in a cell: more never come
+HALF_DIAGONAL = 0.5 * math.sqrt(3.0)
+
+
+@stage
+def draw_all_gas(worker, now, physics, fluid, bodies):
+    """Draw the gas of all bodies at t + dt, and add it to the sums of its cells."""
+    thread, zero = worker.thread, physics.zero
+    here = bodies.counters[thread]
+    here[GAS_COUNT] = 0
+    # First the gas of this thread's part of each body: places, thermal velocities, and the sums that
+    # say how much of their noise is that of the body. A body is solved by one thread. Then each
+    # thread completes its own particles and adds them to its own sums of cells.
+    for i in range(len(bodies.rows)):
+        if of_kind(bodies, i, FILLED) > 0.0:
+            for copy in range(3 if slides(now.box) else 1):
+                draw_gas(worker, now, physics, bodies, i, copy - 1 if slides(now.box) else 0)
+    barrier(worker)
+    low, high = share(len(bodies.rows), thread, worker.threads)
+    for i in range(low, high):
+        take_noise(worker, physics, bodies, i)
+    barrier(worker)
+    bodies.sums[thread] = 0
+    for n in range(here[GAS_COUNT]):
+        move_gas(thread, now, physics, fluid, bodies, n)
+
+
+@seldom
+def draw_gas(worker, now, physics, bodies, i, copy):
+    """The gas in this thread's layers of cells around body i; of images `copy` boxes up."""
+    zero, grid, d, box = physics.zero, now.grid, len(physics.zero), now.box
+    x, radius = load(bodies.rows, i, PLACE, zero), of_kind(bodies, i, RADIUS)
+    x, u = image_up(box, x, zero, copy)
+    speed = u[0]
+    low, high = zero, zero
+    for k in range(d):
+        low = with_item(low, k, floor(x[k] - radius + grid.origin[k]))
+        high = with_item(high, k, floor(x[k] + radius + grid.origin[k]))
+    if slides(box):  # cells across an end are those of other images
+        low = with_item(low, 1, max(low[1], 0.0))
+        high = with_item(high, 1, min(high[1], grid.cells[1] - 1.0))
+    layers = max(int(high[d - 1] - low[d - 1]) + 1, 0)
+    # Layers are dealt to threads from another one on for each body.
+    turn = (worker.thread + i) % worker.threads
+    begin, end = share(layers, turn, worker.threads)
+    middle = zero
+    for c in range(begin, end):
+        middle = with_item(middle, d - 1, low[d - 1] + c + 0.5 - grid.origin[d - 1])
+        for b in range(int(high[1] - low[1]) + 1 if d == 3 else 1):
+            if d == 3:
+                middle = with_item(middle, 1, low[1] + b + 0.5 - grid.origin[1])
+            for a in range(int(high[0] - low[0]) + 1):
+                middle = with_item(middle, 0, low[0] + a + 0.5 - grid.origin[0])
+                if is_cut(bodies, i, added_scaled(middle, -1.0, x)):
+                    fill_cell(worker, now, physics, bodies, i, x, speed, middle)
+
+
+@where("(x, zero)", box=lambda box: box.instance_class in SLIDING)
+def image_up(box, x, zero, copy):
+    """The image of x so many boxes up, and its velocity."""
+    x = with_item(x, 1, x[1] + copy * box.size[1])
+    x = with_item(x, 0, x[0] + copy * box.offset)
+    return x, with_shear(zero, copy * box.speed)
+
+
+@scalar
+def depth_at(bodies, i, s):
+    """Distance of a place at an arm from the surface of body i, negative inside."""
+    if of_kind(bodies, i, IS_BALL) > 0.5:
+        return math.sqrt(dot(s, s)) - of_kind(bodies, i, RADIUS)
+    y = turned_back(load(bodies.rows, i, TURN, FOUR), s)
+    c, _ = state.clearance(bodies, bodies.kind[i], y)
+    return c
+
+
+@scalar
+def is_cut(bodies, i, s):
+    """Whether the surface may cut the cell whose middle is at an arm."""
+    return abs(depth_at(bodies, i, s)) < HALF_DIAGONAL
+
+
+@seldom
+def fill_cell(worker, now, physics, bodies, i, x, speed, middle):
+    """The gas of body i in a cell: places of an ideal gas, of which those in the body are kept."""
+    thread, counter = worker.thread, now.counter
+    gas, here = bodies.gas[thread], bodies.counters[thread]
+    cell = np.int64(cell_index(middle, now.grid))
+    key = np.int64(i) * np.int64(bodies.cells + 1) + cell
+    m, mean = bodies.gas_mass, bodies.density * of_kind(bodies, i, FILLED)
+    width = math.sqrt(physics.kT / m)
+    for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
+        a, b, c, _ = words(counter, BODY_GAS_PLACE, key, j)
+        within = first((unit_open(a), unit_open(b), unit_open(c)), middle)
+        s = added_scaled(in_cell_at(middle, within), -1.0, x)
+        if depth_at(bodies, i, s) < 0.0:
+            n = here[GAS_COUNT]
+            if n == gas.shape[0]:
+                note(here, counter.step, TOO_MANY, i + 1)
+                return
+            a, b, c, e = words(counter, BODY_GAS_VELOCITY, key, j)
+            thermal = scaled(width, normals(middle, a, b, c, e))
+            store(gas, n, GAS_PLACE, added(x, s))
+            store(gas, n, GAS_VELOCITY, thermal)
+            store(gas, n, GAS_ARM, s)
+            gas[n, GAS_SPEED] = speed
+            bodies.gas_number[thread, n] = FIRST_BODY_GAS + key * MOST_OF_CELL + j
+            bodies.gas_body[thread, n] = i
+            here[GAS_COUNT] = n + 1
+            add_hit(bodies, bodies.sums[thread, i], i, m, s, s, thermal, physics)
+
+
+@scalar
+def in_cell_at(middle, within):
+    """The place in a cell by the part of its sides."""
+    for k in range(len(middle)):
+        middle = with_item(middle, k, middle[k] + within[k] - 0.5)
+    return middle
+
+
+@scalar
+def take_noise(worker, physics, bodies, i):
+    """What is to be taken off the gas of body i, as a velocity and an angular velocity."""
+    total, d = bodies.sums[0, i], len(physics.zero)
+    for t in range(1, worker.threads):
+        for k in range(SUMS):
+            total[k] += bodies.sums[t, i, k]
+    dv, dw = THREE, THREE
+    if total[0] != 0:
+        work = bodies.work[worker.thread]
+        solve_noise(bodies, i, total, d, physics_scales(bodies, physics), work)
+        dv, dw = unlevered(bodies, d, work)
+    store(bodies.rows, i, CHANGE, dv)
+    store(bodies.rows, i, CHANGE + 3, dw)
+
+
+@scalar
+def move_gas(thread, now, physics, fluid, bodies, n):
+    """Velocity of a particle of the gas, and what it adds to the sums of its cell."""
+    gas, i, zero = bodies.gas[thread], np.int64(bodies.gas_body[thread, n]), physics.zero
+    r, s = load(gas, n, GAS_PLACE, zero), load(gas, n, GAS_ARM, zero)
+    dv, dw = load(bodies.rows, i, CHANGE, zero), load(bodies.rows, i, CHANGE + 3, THREE)
+    noise = added_scaled(load(gas, n, GAS_VELOCITY, zero), -1.0, added(dv, swept(dw, s)))
+    normal = s
+    if of_kind(bodies, i, B1) != 0.0 or of_kind(bodies, i, B2) != 0.0:
+        normal = normal_at(bodies, i, s, 0.0)
+    v = added(wall_velocity(bodies, i, s, normal, gas[n, GAS_SPEED]), noise)
+    r, v, _ = fold(now.box, r, v, now.grid.shift)
+    m, number = bodies.gas_mass, bodies.gas_number[thread, n]
+    kept, own = contribute(physics.rule, now.counter, (number, 0), m, v, in_cell(r, now.grid))
+    cell = np.int64(cell_index(r, now.grid))
+    store(gas, n, GAS_PLACE, r)
+    store(gas, n, GAS_VELOCITY, v)
+    store(gas, n, GAS_KEPT, kept)
+    bodies.gas_cell[thread, n] = cell
+    sums = fluid.cells.sums[thread]
+    place = np.uint64(cell) * np.uint64(sums_length(len(physics.terms)))
+    sums[place] += optional(tally(physics.energy, m, v), 1)
+    add_values(sums, place + np.uint64(1), terms_of(physics, m, v, own))
+
+
+@stage
+def take_recoil(worker, now, physics, fluid, bodies):
+    """Give bodies what the collision at t + dt gives their gas, in whole numbers."""
+    thread, zero = worker.thread, physics.zero
+    gas, scale = bodies.gas[thread], momentum_scale(physics)
+    for n in range(bodies.counters[thread, GAS_COUNT]):
+        i, r = np.int64(bodies.gas_body[thread, n]), load(gas, n, GAS_PLACE, zero)
+        v, kept = load(gas, n, GAS_VELOCITY, zero), load(gas, n, GAS_KEPT, zero)
+        cell = np.uint64(bodies.gas_cell[thread, n])
+        record = cell * np.uint64(record_length(len(physics.coefficients)))
+        needed = load_values(fluid.cells.coefficients, record, physics.coefficients)
+        after = collide(physics.rule, needed, kept, in_cell(r, now.grid))
+        gain = scaled(bodies.gas_mass, added_scaled(after, -1.0, v))
+        units = added_quanta(gain, scale, integers(zero))
+        taken = bodies.taken[thread, i]
+        add_integers(taken, units)
+        p = scaled(1.0 / scale, floats(units))
+        turn = scaled(1.0 / bodies.lever, outer(load(gas, n, GAS_ARM, zero), p))
+        add_integers(taken[len(zero) :], added_quanta(turn, scale, integers(turn)))
+    barrier(worker)
+    low, high = share(len(bodies.rows), thread, worker.threads)
+    for i in range(low, high):
+        take_impulses(worker, physics, bodies, i)
+    barrier(worker)

@@ -1,0 +1,183 @@
+"""The rigid motion of bodies in a timestep, and the forces on them that are not of the fluid.
+
+Velocity Verlet in sub-steps moves bodies first. The fluid then sees one straight path and one
+uniform turn in the whole timestep.
+"""
+
+import math
+
+from mesokit.kernels.part import stage
+from mesokit.loops.layout import share
+from mesokit.loops.threads import barrier
+from mesokit.method.mpcd.engine.bodies.forces import forces_on
+from mesokit.method.mpcd.engine.bodies.near import box_at_start, keep_lists, note_path
+from mesokit.method.mpcd.engine.bodies.state import (
+    BEGIN,
+    BEGIN_TURN,
+    END_TURN,
+    FORCE,
+    FOUR,
+    INERTIA,
+    IS_BALL,
+    MEAN_SPIN,
+    MEAN_VELOCITY,
+    PLACE,
+    ROOT,
+    SPIN,
+    THREE,
+    TORQUE,
+    TUMBLES,
+    TURN,
+    VELOCITY,
+    after_turn,
+    load,
+    of_kind,
+    spin_of,
+    store,
+    turn_by,
+)
+from mesokit.method.mpcd.engine.cpu.groups import STREAM
+from mesokit.scalar.elementary import sincos_turn
+from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.random import BODY_TUMBLE, unit_open, words
+from mesokit.scalar.vector import added, added_scaled, scaled
+
+
+@stage
+def begin_step(worker, now, physics, bodies):
+    """Velocities of bodies at t + dt without the fluid, and their motion t -> t + dt.
+
+    Place and orientation stay those at t until the fluid has flown.
+    """
+    if not now.flags & STREAM:
+        return
+    rows, box, n = bodies.rows, box_at_start(now, physics), bodies.substeps
+    first, last = share(len(rows), worker.thread, worker.threads)
+    time = physics.timestep / n
+    for i in range(first, last):
+        store(rows, i, FORCE, THREE)
+        store(rows, i, TORQUE, THREE)
+        tumble(bodies, now.counter, i, physics.timestep, len(physics.zero) == 2)
+        store(rows, i, BEGIN, load(rows, i, PLACE, THREE))
+        store(rows, i, BEGIN_TURN, load(rows, i, TURN, FOUR))
+    keep_lists(worker, now, physics, bodies)
+    # Kick, drift, kick: forces at the beginning of a sub-step are those at the end of the last.
+    # Threads meet after each drift, because forces need the places of all bodies.
+    for i in range(first, last):
+        kick_body(bodies, physics, box, i, 0.5 * time)
+    barrier(worker)
+    for k in range(n):
+        for i in range(first, last):
+            drift_body(bodies, physics, i, time)
+        barrier(worker)
+        for i in range(first, last):
+            kick_body(bodies, physics, box, i, (0.5 if k == n - 1 else 1.0) * time)
+        barrier(worker)
+    for i in range(first, last):
+        begin_motion(bodies, physics, i)
+        note_path(worker, now, physics, bodies, i)
+    barrier(worker)
+
+
+@scalar
+def kick_body(bodies, physics, box, i, time):
+    """Change of the velocities of body i by the forces where it is."""
+    rows, kind, zero = bodies.rows, bodies.kind[i], physics.zero
+    force, torque = forces_on(bodies, physics, box, i, zero)
+    part = time / physics.timestep
+    for k in range(len(zero)):
+        root = bodies.kinds[kind, ROOT + k]
+        rows[i, VELOCITY + k] += time * root * root * force[k]
+        rows[i, FORCE + k] += part * force[k]
+    store(rows, i, TORQUE, added_scaled(load(rows, i, TORQUE, THREE), part, torque))
+    change = spin_of(bodies, i, load(rows, i, TURN, FOUR), scaled(time, torque))
+    store(rows, i, SPIN, added(load(rows, i, SPIN, THREE), change))
+
+
+@scalar
+def drift_body(bodies, physics, i, time):
+    """Straight path and turn of body i with its angular momentum kept.
+
+    It turns about the angular velocity at half the time, which follows from the angular momentum
+    and the inertia there, found with one correction: reversible, and exact for a sphere.
+    """
+    rows, zero = bodies.rows, physics.zero
+    v, spin, q = load(rows, i, VELOCITY, zero), load(rows, i, SPIN, THREE), load(rows, i, TURN, FOUR)
+    store(rows, i, PLACE, added_scaled(load(rows, i, PLACE, zero), time, v))
+    if of_kind(bodies, i, IS_BALL) > 0.5:
+        store(rows, i, TURN, after_turn(q, spin, time))
+        store(rows, i, MEAN_SPIN, spin)
+        return
+    momentum = turn_by(bodies, i, q, INERTIA, spin)
+    for _ in range(2):
+        spin = spin_of(bodies, i, after_turn(q, spin, 0.5 * time), momentum)
+    q = after_turn(q, spin, time)
+    store(rows, i, TURN, q)
+    store(rows, i, MEAN_SPIN, spin)
+    store(rows, i, SPIN, spin_of(bodies, i, q, momentum))
+
+
+@scalar
+def begin_motion(bodies, physics, i):
+    """The one motion that the fluid sees, from the place before to that after all sub-steps."""
+    rows, zero, time = bodies.rows, physics.zero, physics.timestep
+    path = added_scaled(load(rows, i, PLACE, zero), -1.0, load(rows, i, BEGIN, zero))
+    store(rows, i, MEAN_VELOCITY, scaled(1.0 / time, path))
+    store(rows, i, END_TURN, load(rows, i, TURN, FOUR))
+    if bodies.substeps > 1:
+        turn = turn_between(load(rows, i, BEGIN_TURN, FOUR), load(rows, i, TURN, FOUR))
+        store(rows, i, MEAN_SPIN, scaled(1.0 / time, turn))
+    store(rows, i, PLACE, load(rows, i, BEGIN, zero))
+    store(rows, i, TURN, load(rows, i, BEGIN_TURN, FOUR))
+    if bodies.substeps > 1:
+        end_turn(bodies, i, time)
+
+
+@seldom
+def end_turn(bodies, i, time):
+    """Orientation of body i after its mean motion; the angular momentum is kept."""
+    rows, old = bodies.rows, load(bodies.rows, i, END_TURN, FOUR)
+    q = after_turn(load(rows, i, TURN, FOUR), load(rows, i, MEAN_SPIN, THREE), time)
+    store(rows, i, END_TURN, q)
+    if of_kind(bodies, i, IS_BALL) < 0.5:
+        momentum = turn_by(bodies, i, old, INERTIA, load(rows, i, SPIN, THREE))
+        store(rows, i, SPIN, spin_of(bodies, i, q, momentum))
+
+
+@scalar
+def turn_between(q, p):
+    """The vector of the turn, less than half a turn, from one orientation to another."""
+    w = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]
+    x = p[1] * q[0] - p[0] * q[1] - p[2] * q[3] + p[3] * q[2]
+    y = p[2] * q[0] - p[0] * q[2] - p[3] * q[1] + p[1] * q[3]
+    z = p[3] * q[0] - p[0] * q[3] - p[1] * q[2] + p[2] * q[1]
+    s = math.sqrt(x * x + y * y + z * z)
+    # The angle over its sine: t from 2 tan(t/2) = 2 s / (1 + w) by the series of the arc tangent,
+    # of a quarter of the angle, which is small.
+    t = s / (1.0 + abs(w))
+    u = t / (1.0 + math.sqrt(1.0 + t * t))
+    v = u * u
+    series = 1.0 + v * (-1.0 / 3.0 + v * (1.0 / 5.0 + v * (-1.0 / 7.0 + v * (1.0 / 9.0 - v / 11.0))))
+    angle = 8.0 * u * series
+    size = angle / s if s > 1e-300 else 2.0
+    size = -size if w < 0.0 else size
+    return (size * x, size * y, size * z)
+
+
+@seldom
+def tumble(bodies, counter, i, time, planar):
+    """Turn a body that runs and tumbles to a new direction, at random times."""
+    rate = of_kind(bodies, i, TUMBLES)
+    if rate == 0.0:
+        return
+    a, b, c, d = words(counter, BODY_TUMBLE, i, 0)
+    if unit_open(a) < rate * time:
+        s, co = sincos_turn(unit_open(b))
+        height = 1.0 - 2.0 * unit_open(c)
+        if planar:
+            store(bodies.rows, i, TURN, (co, 0.0, 0.0, s))
+        else:
+            # the shortest turn of axis x to a direction that is uniform on the sphere
+            w = math.sqrt(0.5 * (1.0 + height))
+            side = math.sqrt(max(0.5 * (1.0 - height), 0.0))
+            store(bodies.rows, i, TURN, (w, 0.0, side * co, side * s))

@@ -1,0 +1,219 @@
+"""Readings of bodies for observables, their state for checkpoints, and what stops a run."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import fold
+from mesokit.errors import RunError
+from mesokit.kernels.kernel import kernel
+from mesokit.loops.threads import Worker
+from mesokit.method.mpcd.body.protocol import named
+from mesokit.method.mpcd.engine.bodies import state
+from mesokit.method.mpcd.engine.bodies.allocate import masses_of
+from mesokit.method.mpcd.engine.bodies.hits import deepest
+from mesokit.method.mpcd.engine.bodies.near import cell_of, list_by_cells
+from mesokit.method.mpcd.engine.bodies.state import (
+    ANGLE,
+    BOXES,
+    CAUGHT,
+    EVERY_BODY,
+    FORCE,
+    HOME,
+    PATH,
+    PLACE,
+    PUT_BACK,
+    SECOND_HITS,
+    SPIN,
+    STEP,
+    TOO_FAR,
+    TORQUE,
+    TURN,
+    VELOCITY,
+    WHAT,
+    WHICH,
+)
+from mesokit.scalar.vector import row, scaled
+
+Floats = NDArray[np.float64]
+ALONE = Worker(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
+MAKE_LISTS = 1e9  # a path after which lists are made anew
+KEPT = {  # what a checkpoint holds, with the columns that it takes
+    "place": (PLACE, 3),
+    "turn": (TURN, 4),
+    "velocity": (VELOCITY, 3),
+    "spin": (SPIN, 3),
+    "boxes": (BOXES, 3),
+    "angle": (ANGLE, 3),
+    "force": (FORCE, 3),
+    "torque": (TORQUE, 3),
+    "home": (HOME, 3),
+}
+
+
+class BodyReadings:
+    """The bodies of a fluid in memory, by their numbers from 0, kind after kind."""
+
+    def __init__(self, memory: Any) -> None:
+        self.memory, self.case = memory, memory.numbers.case
+        self.dimension, self.state_of = memory.numbers.dimension, memory.bodies
+        self.names = [one.name for one in named(self.case.bodies)]
+        self.kinds: NDArray[np.int64] = self.state_of.kind
+        self.masses: Floats = masses_of(self.case)[self.kinds]
+
+    @property
+    def number(self) -> int:
+        """How many bodies."""
+        return len(self.kinds)
+
+    def _columns(self, first: int, number: int | None = None) -> Floats:
+        number = self.dimension if number is None else number
+        return np.array(self.state_of.rows[:, first : first + number])
+
+    def places(self, unwrapped: bool = False) -> Floats:
+        """Centres of mass (bodies, d), in the box or as if it had no bounds."""
+        x = self._columns(PLACE)
+        if unwrapped:
+            boxes, box = self._columns(BOXES), self.memory.box
+            x = x + boxes * self.memory.numbers.box
+            if isinstance(box, state.SLIDING):
+                x[:, 0] += boxes[:, 1] * box.offset
+        return x
+
+    @property
+    def velocities(self) -> Floats:
+        """Velocities (bodies, d)."""
+        return self._columns(VELOCITY)
+
+    @property
+    def spins(self) -> Floats:
+        """Angular velocities (bodies, 3); in 2D along z."""
+        return self._columns(SPIN, 3)
+
+    @property
+    def orientations(self) -> Floats:
+        """Unit quaternions w, x, y, z (bodies, 4)."""
+        return self._columns(TURN, 4)
+
+    @property
+    def headings(self) -> Floats:
+        """The axis x of each body (bodies, d)."""
+        w, x, y, z = self.orientations.T
+        axis = [w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)]
+        return np.stack(axis[: self.dimension], axis=1)
+
+    @property
+    def angles(self) -> Floats:
+        """Angular velocities, summed over time (bodies, 3): how far each has turned."""
+        return self._columns(ANGLE, 3)
+
+    @property
+    def forces(self) -> Floats:
+        """Forces of the last timestep (bodies, d), of the fluid and of all else."""
+        return self._columns(FORCE)
+
+    @property
+    def torques(self) -> Floats:
+        """Torques of the last timestep (bodies, 3)."""
+        return self._columns(TORQUE, 3)
+
+    def counts(self) -> dict[str, int]:
+        """Second hits and particles put back in the last step."""
+        counters = self.state_of.counters
+        return {
+            "second hits": int(counters[:, SECOND_HITS].sum()),
+            "put back": int(counters[:, PUT_BACK].sum()),
+        }
+
+    def inertia(self, kind: int) -> Floats:
+        """Of a kind, in its own frame (3, 3)."""
+        solid = self.case.bodies[kind].solid(self.dimension)
+        found: Floats = masses_of(self.case)[kind] / solid.volume * solid.moments
+        return found
+
+    def in_own_frame(self, vectors: Floats) -> Floats:
+        """Vectors (bodies, 3) along the axes of each body."""
+        w, u = self.orientations[:, :1], -self.orientations[:, 1:]
+        twist = 2.0 * np.cross(u, vectors)
+        turned: Floats = vectors + w * twist + np.cross(u, twist)
+        return turned
+
+    def motion(self) -> Floats:
+        """Momentum and twice the kinetic energy, that of rotation included (d + 1,)."""
+        v, m = self.velocities, self.masses
+        own, energy = self.in_own_frame(self.spins), 0.0
+        for kind in range(len(self.case.bodies)):
+            some = own[self.kinds == kind]
+            energy += float(np.einsum("ni,ij,nj->", some, self.inertia(kind), some))
+        return np.append(m @ v, m @ (v**2).sum(axis=1) + energy)
+
+    def begin(self, places: Floats, turns: Floats, velocities: Floats, spins: Floats) -> None:
+        """Give the bodies their first state."""
+        rows, d = self.state_of.rows, self.dimension
+        rows[:, PLACE : PLACE + d] = rows[:, HOME : HOME + d] = places
+        for kind, given in enumerate(self.case.bodies):
+            if given.trap is not None and given.trap.centre is not None:
+                rows[self.kinds == kind, HOME : HOME + d] = given.trap.centre
+        rows[:, TURN : TURN + 4] = rows[:, state.END_TURN : state.END_TURN + 4] = turns
+        rows[:, VELOCITY : VELOCITY + d], rows[:, SPIN : SPIN + 3] = velocities, spins
+        rows[:, PATH] = MAKE_LISTS
+
+    def inside(self, places: Floats) -> NDArray[np.bool_]:
+        """Which of places (n, d) are in a body."""
+        found, zero = np.zeros(len(places), bool), self.memory.physics.zero
+        mark_inside(ALONE, self.memory.box, self.state_of, zero, np.ascontiguousarray(places), found)
+        return found
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """All that the next step depends on."""
+        return {
+            f"body_{name}": self._columns(first, number) for name, (first, number) in KEPT.items()
+        }
+
+    def restore(self, given: dict[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        rows = self.state_of.rows
+        for name, (first, number) in KEPT.items():
+            rows[:, first : first + number] = given[f"body_{name}"]
+        rows[:, state.END_TURN : state.END_TURN + 4] = rows[:, TURN : TURN + 4]
+        rows[:, PATH] = MAKE_LISTS
+        self.state_of.counters[:] = 0
+
+    def check(self) -> None:
+        """That all bodies could be followed in the last steps. Raises RunError."""
+        counters = self.state_of.counters
+        noted = counters[counters[:, STEP] > 0]
+        if not len(noted):
+            return
+        first = noted[np.lexsort((noted[:, WHICH], noted[:, STEP]))][0]
+        step, what, which = int(first[STEP]), int(first[WHAT]), int(first[WHICH])
+        if what == TOO_FAR:
+            raise RunError(
+                f"step {step}: body {which} goes farther than {0.5 * self.state_of.skin:g} cells in "
+                "a timestep; expected heavier bodies, smaller forces or a shorter fluid.timestep"
+            )
+        if what == CAUGHT:
+            raise RunError(
+                f"step {step}: particle {which - 1} is caught between bodies; expected a longer "
+                "bodies.interaction.range"
+            )
+        raise RunError(
+            f"step {step}: twice as many particles at bodies as there are in equilibrium; expected "
+            "a fluid that is not so dense there"
+        )
+
+
+@kernel
+def mark_inside(worker, box, bodies, zero, places, found):
+    """Note which places are in a body."""
+    list_by_cells(worker, box, bodies, zero)
+    for n in range(len(places)):
+        r = row(places, n, zero)
+        r, _, _ = fold(box, r, zero, scaled(0.0, zero))
+        cell = np.int64(cell_of(bodies, box, r))
+        if bodies.near_count[cell] == EVERY_BODY:
+            cell = np.int64(EVERY_BODY)
+        depth, _ = deepest(box, bodies, cell, r)
+        found[n] = depth < 0.0
+

@@ -1,0 +1,78 @@
+"""One pass over a fluid with bodies: particles that may meet a body wait for it to move.
+
+Without bodies this costs nothing: it is another pass (see `cpu.sweep`).
+"""
+
+import numpy as np
+
+from mesokit.case.box import SLIDING
+from mesokit.kernels.part import stage
+from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
+from mesokit.method.mpcd.engine.bodies.near import choose_near
+from mesokit.method.mpcd.engine.bodies.state import COUNT, IMAGE, PUT_BACK, SECOND_HITS
+from mesokit.method.mpcd.engine.cpu import stages
+from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, STREAM
+from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
+from mesokit.method.mpcd.engine.where import where
+
+KEEP, RESTORE = 0, 1
+
+
+@where(box=lambda box: box.instance_class in SLIDING)
+def keep_images(box, bodies, thread, near, chosen, image, what):
+    """Keep the image counts of the particles near bodies, which are counted when they are put back,
+    or restore them."""
+    for j in range(near):
+        n = bodies.counters[thread, COUNT] - near + j
+        for k in range(len(image)):
+            if what == KEEP:
+                bodies.numbers[thread, n, IMAGE + k] = image[k, chosen[j]]
+            else:
+                image[k, chosen[j]] = np.int32(bodies.numbers[thread, n, IMAGE + k])
+
+
+@stage
+def stream_around_bodies(worker, now, physics, fluid, bodies):
+    """Do the stages that the flags have (see `cpu.sweep`) for particles that no body can reach.
+
+    Of the others velocities are those after the collision; they are on the list of this thread.
+    """
+    particles, scratch, zero = fluid.particles, fluid.scratch, physics.zero
+    gathered, terms = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
+    clear, marks = scratch.clear[worker.thread], scratch.marks[worker.thread]
+    chosen, impulse = bodies.chosen[worker.thread], fluid.taken.impulse[worker.thread]
+    sums, here = fluid.cells.sums[worker.thread], bodies.counters[worker.thread]
+    if now.flags & STREAM:
+        here[COUNT] = here[PUT_BACK] = here[SECOND_HITS] = 0
+    first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+    # As `cpu.sweep`, but particles near a body are copied to a list with r and v at t, after the
+    # collision. Their lanes fly with the others, for whole vectors, and do not count: their terms
+    # go to the spare cell. `put_back` restores them at t + dt.
+    for s in range(first, last):
+        lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
+        strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
+        ids, image = particles.ident[places], particles.image[:, places]
+        if now.flags & COLLIDE:
+            stages.gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
+            stages.collide_strip(physics, now.old, strip, gathered)
+        if now.flags & STREAM:
+            near = choose_near(worker, now, physics, bodies, strip, s, lanes, chosen)
+            look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
+            left = stages.stream_strip(physics, strip, clear, marks)
+            if left != 0:
+                for j in range(near):  # they meet walls later
+                    marks[chosen[j]] = 0
+                far = stages.bounce_strip(
+                    physics, now.counter, strip, lanes, left, ids, marks, impulse
+                )
+                forget(fluid.room, s, far)
+            keep_images(now.box, bodies, worker.thread, near, chosen, image, KEEP)
+            stages.slide_strip(now.box, now.grid, strip, image, zero)
+            keep_images(now.box, bodies, worker.thread, near, chosen, image, RESTORE)
+            stages.bin_strip(physics, now, strip, cell, ids, terms)
+            for j in range(near):
+                cell[chosen[j]] = fluid.cells.number  # which takes what must not act
+            stages.add_strip(
+                cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero)
+            )
