@@ -40,6 +40,9 @@ from mesokit.theory.demixing import demixing_diffusion as demixing_diffusion
 from mesokit.theory.dumbbell_shear import dumbbell_viscosity as dumbbell_viscosity
 from mesokit.theory.dumbbell_shear import fene_p_thinning as fene_p_thinning
 from mesokit.theory.dumbbell_shear import pair_friction as pair_friction
+from mesokit.theory.ellipsoid_friction import EllipsoidFriction as EllipsoidFriction
+from mesokit.theory.ellipsoid_friction import depolarisation as depolarisation
+from mesokit.theory.ellipsoid_friction import ellipsoid_friction as ellipsoid_friction
 from mesokit.theory.enskog import contact_value as contact_value
 from mesokit.theory.enskog import enskog_diffusion as enskog_diffusion
 from mesokit.theory.enskog import enskog_rate as enskog_rate
@@ -169,6 +172,9 @@ from mesokit.theory.rigid_chain import ChainWave as ChainWave
 from mesokit.theory.rigid_chain import RigidChain as RigidChain
 from mesokit.theory.rigid_chain import rigid_chain as rigid_chain
 from mesokit.theory.rigid_chain import rigid_chain_wave as rigid_chain_wave
+from mesokit.theory.rod_friction import RodFriction as RodFriction
+from mesokit.theory.rod_friction import capsule_friction as capsule_friction
+from mesokit.theory.rod_friction import cylinder_friction as cylinder_friction
 from mesokit.theory.rouse_times import RouseTimes as RouseTimes
 from mesokit.theory.rouse_times import rouse_times as rouse_times
 from mesokit.theory.rouse_times import rouse_times_from_slowest as rouse_times_from_slowest
