@@ -194,6 +194,11 @@ from mesokit.theory.sonine import sonine_speed_cdf as sonine_speed_cdf
 from mesokit.theory.square_array import square_array_drag as square_array_drag
 from mesokit.theory.square_array import square_array_drag_dilute as square_array_drag_dilute
 from mesokit.theory.square_array import square_array_permeability as square_array_permeability
+from mesokit.theory.squirmers import squirmer_flow as squirmer_flow
+from mesokit.theory.squirmers import squirmer_speed as squirmer_speed
+from mesokit.theory.squirmers import squirmer_speed_in_box as squirmer_speed_in_box
+from mesokit.theory.squirmers import squirmer_speed_inertial as squirmer_speed_inertial
+from mesokit.theory.squirmers import swimmer_diffusion as swimmer_diffusion
 from mesokit.theory.stress_in_time import StressInTime as StressInTime
 from mesokit.theory.stress_in_time import stress_in_time as stress_in_time
 from mesokit.theory.surface import ring_differences as ring_differences
