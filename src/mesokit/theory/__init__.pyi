@@ -115,6 +115,9 @@ from mesokit.theory.janssen import janssen_length as janssen_length
 from mesokit.theory.janssen import janssen_share as janssen_share
 from mesokit.theory.janssen import janssen_stress as janssen_stress
 from mesokit.theory.janssen import stress_ratio as stress_ratio
+from mesokit.theory.jeffery import jeffery_angle as jeffery_angle
+from mesokit.theory.jeffery import jeffery_period as jeffery_period
+from mesokit.theory.jeffery import spin_in_shear as spin_in_shear
 from mesokit.theory.kolmogorov import kolmogorov_onset_time as kolmogorov_onset_time
 from mesokit.theory.kolmogorov import kolmogorov_velocity as kolmogorov_velocity
 from mesokit.theory.kolmogorov import kolmogorov_viscosity as kolmogorov_viscosity
@@ -175,6 +178,9 @@ from mesokit.theory.rigid_chain import rigid_chain_wave as rigid_chain_wave
 from mesokit.theory.rod_friction import RodFriction as RodFriction
 from mesokit.theory.rod_friction import capsule_friction as capsule_friction
 from mesokit.theory.rod_friction import cylinder_friction as cylinder_friction
+from mesokit.theory.rotational_friction import angular_vacf_tail as angular_vacf_tail
+from mesokit.theory.rotational_friction import orientation_memory as orientation_memory
+from mesokit.theory.rotational_friction import rotational_friction as rotational_friction
 from mesokit.theory.rouse_times import RouseTimes as RouseTimes
 from mesokit.theory.rouse_times import rouse_times as rouse_times
 from mesokit.theory.rouse_times import rouse_times_from_slowest as rouse_times_from_slowest
