@@ -57,6 +57,12 @@ from mesokit.theory.flight_moduli import flight_moduli as flight_moduli
 from mesokit.theory.free_time import collision_speeds as collision_speeds
 from mesokit.theory.free_time import free_time_cdf as free_time_cdf
 from mesokit.theory.free_time import free_time_spread as free_time_spread
+from mesokit.theory.friction_by_hits import enskog_friction as enskog_friction
+from mesokit.theory.friction_by_hits import enskog_rotational_friction as enskog_rotational_friction
+from mesokit.theory.friction_by_hits import (
+    friction_by_virtual_particles as friction_by_virtual_particles,
+)
+from mesokit.theory.friction_by_hits import velocity_variance as velocity_variance
 from mesokit.theory.gamma import cell_energy_cdf as cell_energy_cdf
 from mesokit.theory.gamma import cell_energy_pdf as cell_energy_pdf
 from mesokit.theory.gamma import cell_energy_variance as cell_energy_variance
@@ -185,7 +191,6 @@ from mesokit.theory.rouse_times import RouseTimes as RouseTimes
 from mesokit.theory.rouse_times import rouse_times as rouse_times
 from mesokit.theory.rouse_times import rouse_times_from_slowest as rouse_times_from_slowest
 from mesokit.theory.self_diffusion import self_diffusion as self_diffusion
-from mesokit.theory.slip_sphere import enskog_friction as enskog_friction
 from mesokit.theory.slip_sphere import slip_sphere_diffusion as slip_sphere_diffusion
 from mesokit.theory.slope import EndOfSliding as EndOfSliding
 from mesokit.theory.slope import Rolling as Rolling
