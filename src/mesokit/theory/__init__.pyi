@@ -37,6 +37,9 @@ from mesokit.theory.cubic_array import cubic_array_drag_dilute as cubic_array_dr
 from mesokit.theory.cubic_array import cubic_array_permeability as cubic_array_permeability
 from mesokit.theory.demixing import demixing_coupling as demixing_coupling
 from mesokit.theory.demixing import demixing_diffusion as demixing_diffusion
+from mesokit.theory.drawn_body import disk_friction_in_square as disk_friction_in_square
+from mesokit.theory.drawn_body import einstein_diffusion as einstein_diffusion
+from mesokit.theory.drawn_body import sphere_friction_in_cube as sphere_friction_in_cube
 from mesokit.theory.dumbbell_shear import dumbbell_viscosity as dumbbell_viscosity
 from mesokit.theory.dumbbell_shear import fene_p_thinning as fene_p_thinning
 from mesokit.theory.dumbbell_shear import pair_friction as pair_friction
