@@ -249,6 +249,10 @@ from mesokit.theory.transverse_modes import transverse_correlation as transverse
 from mesokit.theory.transverse_modes import transverse_viscosity_fit as transverse_viscosity_fit
 from mesokit.theory.trimer import trimer_bond_length as trimer_bond_length
 from mesokit.theory.trimer import trimer_spring_constant as trimer_spring_constant
+from mesokit.theory.two_spheres import PairSpeeds as PairSpeeds
+from mesokit.theory.two_spheres import pair_speeds as pair_speeds
+from mesokit.theory.two_spheres import pair_speeds_in_cube as pair_speeds_in_cube
+from mesokit.theory.two_spheres import rotne_prager_in_cube as rotne_prager_in_cube
 from mesokit.theory.velocity_autocorrelation import vacf_modes as vacf_modes
 from mesokit.theory.velocity_autocorrelation import vacf_molecular_chaos as vacf_molecular_chaos
 from mesokit.theory.velocity_autocorrelation import vacf_tail as vacf_tail
