@@ -2,6 +2,7 @@
 
 from mesokit.theory.barometric import barometric_cdf as barometric_cdf
 from mesokit.theory.barometric import barometric_mean as barometric_mean
+from mesokit.theory.barometric import buoyant_scale as buoyant_scale
 from mesokit.theory.bead_diffusion import bead_diffusion as bead_diffusion
 from mesokit.theory.beverloo import BeverlooFit as BeverlooFit
 from mesokit.theory.beverloo import beverloo_fit as beverloo_fit
@@ -194,7 +195,11 @@ from mesokit.theory.rouse_times import RouseTimes as RouseTimes
 from mesokit.theory.rouse_times import rouse_times as rouse_times
 from mesokit.theory.rouse_times import rouse_times_from_slowest as rouse_times_from_slowest
 from mesokit.theory.self_diffusion import self_diffusion as self_diffusion
+from mesokit.theory.settling import dilute_settling as dilute_settling
+from mesokit.theory.settling import hindered_settling as hindered_settling
+from mesokit.theory.settling import settling_of_few as settling_of_few
 from mesokit.theory.slip_sphere import slip_sphere_diffusion as slip_sphere_diffusion
+from mesokit.theory.slit_mobility import slit_mobility as slit_mobility
 from mesokit.theory.slope import EndOfSliding as EndOfSliding
 from mesokit.theory.slope import Rolling as Rolling
 from mesokit.theory.slope import Thrown as Thrown
@@ -218,6 +223,7 @@ from mesokit.theory.stress_in_time import stress_in_time as stress_in_time
 from mesokit.theory.surface import ring_differences as ring_differences
 from mesokit.theory.surface import ring_width as ring_width
 from mesokit.theory.surface import solid_on_solid_steps as solid_on_solid_steps
+from mesokit.theory.suspension_viscosity import suspension_viscosity as suspension_viscosity
 from mesokit.theory.sweeps import packing_sweeps as packing_sweeps
 from mesokit.theory.sweeps import slowest_wave as slowest_wave
 from mesokit.theory.sweeps import sweep_error as sweep_error
