@@ -82,14 +82,59 @@ def test_rods_of_five_diameters():
     assert cylinder_friction(30, 6, 0.5) == pytest.approx(
         np.array(cylinder_friction(10, 2, 1.0)) * [1.5, 1.5, 13.5]
     )
-    assert capsule_friction(3.0, 0.5) == pytest.approx((57.6, 74.1, 10530))
     # between the spheroid in it and the cylinder about it
     inner = ellipsoid_friction([5.0, 1.0, 1.0], 1.0)
     least = (*inner.translation[:2], inner.rotation[1])
     for low, capsule, high in zip(
-        least, capsule_friction(1.0, 1.0), cylinder_friction(10, 2, 1.0), strict=True
+        least, capsule_friction(10, 2, 1.0), cylinder_friction(10, 2, 1.0), strict=True
     ):
         assert low < capsule < high
+
+
+def capsule_points(aspect, radius, spacing):
+    """About x, on a capsule around the axis of one of radius 1."""
+    straight = aspect - 1
+    reach = straight + 0.5 * math.pi * radius  # along the meridian
+    rings = round(2 * reach / spacing)
+    points = []
+    for ring in range(rings):
+        s = reach * (2 * (ring + 0.5) / rings - 1)
+        turn = max(abs(s) - straight, 0) / radius
+        x = min(abs(s), straight) + radius * math.sin(turn)
+        n = max(3, round(2 * math.pi * radius * math.cos(turn) / spacing))
+        angle = 2 * np.pi * (np.arange(n) / n + 0.618 * ring)
+        across = radius * math.cos(turn)
+        points.append(
+            [np.full(n, math.copysign(x, s)), across * np.cos(angle), across * np.sin(angle)]
+        )
+    return np.concatenate(points, axis=1).T
+
+
+def by_point_forces(aspect, spacing):
+    """Friction of a capsule of radius 1, from forces inside that move its surface as one."""
+    inside = capsule_points(aspect, 0.55, 0.74 * spacing)
+    surface = capsule_points(aspect, 1.0, spacing / 1.4)
+    away = surface[:, None] - inside
+    r = np.linalg.norm(away, axis=-1)[..., None, None]
+    oseen = (np.eye(3) / r + away[..., None] * away[..., None, :] / r**3) / (8 * math.pi)
+    matrix = oseen.transpose(0, 2, 1, 3).reshape(surface.size, inside.size)
+    motions = [np.tile(axis, (len(surface), 1)) for axis in np.eye(3)[:2]]
+    motions.append(np.cross([0.0, 0.0, 1.0], surface))
+    wanted = np.stack([motion.ravel() for motion in motions], 1)
+    force = np.linalg.lstsq(matrix, wanted, rcond=1e-12)[0].reshape(-1, 3, 3)
+    torque = np.cross(inside, force[..., 2])[:, 2].sum()
+    return force[:, 0, 0].sum(), force[:, 1, 1].sum(), torque
+
+
+@pytest.mark.parametrize(("aspect", "spacing"), [(1.5, 0.35), (5.0, 0.45), (8.0, 0.5)])
+def test_capsules(aspect, spacing):
+    found = capsule_friction(3 * 2 * aspect, 3 * 2, 0.7) / (0.7 * np.array([3, 3, 27]))
+    assert found == pytest.approx(by_point_forces(aspect, spacing), rel=2e-3)
+
+
+def test_a_capsule_of_no_cylinder_is_a_sphere():
+    found = np.array(capsule_friction(2, 2, 1.0))
+    assert found == pytest.approx(math.pi * np.array([6, 6, 8]), rel=2e-4)
 
 
 def test_shapes_refuse():
@@ -99,5 +144,5 @@ def test_shapes_refuse():
         ellipsoid_friction([1.0, 2.0, 0.0], 1.0)
     with pytest.raises(ValueError, match="from 2 to 30"):
         cylinder_friction(3.0, 2.0, 1.0)
-    with pytest.raises(ValueError, match="radius = 0"):
-        capsule_friction(0.0, 1.0)
+    with pytest.raises(ValueError, match="from 1 to 20"):
+        capsule_friction(1.0, 2.0, 1.0)
