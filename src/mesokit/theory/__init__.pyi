@@ -2,6 +2,7 @@
 
 from mesokit.theory.barometric import barometric_cdf as barometric_cdf
 from mesokit.theory.barometric import barometric_mean as barometric_mean
+from mesokit.theory.barometric import buoyant_scale as buoyant_scale
 from mesokit.theory.bead_diffusion import bead_diffusion as bead_diffusion
 from mesokit.theory.beverloo import BeverlooFit as BeverlooFit
 from mesokit.theory.beverloo import beverloo_fit as beverloo_fit
@@ -37,9 +38,15 @@ from mesokit.theory.cubic_array import cubic_array_drag_dilute as cubic_array_dr
 from mesokit.theory.cubic_array import cubic_array_permeability as cubic_array_permeability
 from mesokit.theory.demixing import demixing_coupling as demixing_coupling
 from mesokit.theory.demixing import demixing_diffusion as demixing_diffusion
+from mesokit.theory.drawn_body import disk_friction_in_square as disk_friction_in_square
+from mesokit.theory.drawn_body import einstein_diffusion as einstein_diffusion
+from mesokit.theory.drawn_body import sphere_friction_in_cube as sphere_friction_in_cube
 from mesokit.theory.dumbbell_shear import dumbbell_viscosity as dumbbell_viscosity
 from mesokit.theory.dumbbell_shear import fene_p_thinning as fene_p_thinning
 from mesokit.theory.dumbbell_shear import pair_friction as pair_friction
+from mesokit.theory.ellipsoid_friction import EllipsoidFriction as EllipsoidFriction
+from mesokit.theory.ellipsoid_friction import depolarisation as depolarisation
+from mesokit.theory.ellipsoid_friction import ellipsoid_friction as ellipsoid_friction
 from mesokit.theory.enskog import contact_value as contact_value
 from mesokit.theory.enskog import enskog_diffusion as enskog_diffusion
 from mesokit.theory.enskog import enskog_rate as enskog_rate
@@ -54,6 +61,12 @@ from mesokit.theory.flight_moduli import flight_moduli as flight_moduli
 from mesokit.theory.free_time import collision_speeds as collision_speeds
 from mesokit.theory.free_time import free_time_cdf as free_time_cdf
 from mesokit.theory.free_time import free_time_spread as free_time_spread
+from mesokit.theory.friction_by_hits import enskog_friction as enskog_friction
+from mesokit.theory.friction_by_hits import enskog_rotational_friction as enskog_rotational_friction
+from mesokit.theory.friction_by_hits import (
+    friction_by_virtual_particles as friction_by_virtual_particles,
+)
+from mesokit.theory.friction_by_hits import velocity_variance as velocity_variance
 from mesokit.theory.gamma import cell_energy_cdf as cell_energy_cdf
 from mesokit.theory.gamma import cell_energy_pdf as cell_energy_pdf
 from mesokit.theory.gamma import cell_energy_variance as cell_energy_variance
@@ -112,6 +125,9 @@ from mesokit.theory.janssen import janssen_length as janssen_length
 from mesokit.theory.janssen import janssen_share as janssen_share
 from mesokit.theory.janssen import janssen_stress as janssen_stress
 from mesokit.theory.janssen import stress_ratio as stress_ratio
+from mesokit.theory.jeffery import jeffery_angle as jeffery_angle
+from mesokit.theory.jeffery import jeffery_period as jeffery_period
+from mesokit.theory.jeffery import spin_in_shear as spin_in_shear
 from mesokit.theory.kolmogorov import kolmogorov_onset_time as kolmogorov_onset_time
 from mesokit.theory.kolmogorov import kolmogorov_velocity as kolmogorov_velocity
 from mesokit.theory.kolmogorov import kolmogorov_viscosity as kolmogorov_viscosity
@@ -169,12 +185,21 @@ from mesokit.theory.rigid_chain import ChainWave as ChainWave
 from mesokit.theory.rigid_chain import RigidChain as RigidChain
 from mesokit.theory.rigid_chain import rigid_chain as rigid_chain
 from mesokit.theory.rigid_chain import rigid_chain_wave as rigid_chain_wave
+from mesokit.theory.rod_friction import RodFriction as RodFriction
+from mesokit.theory.rod_friction import capsule_friction as capsule_friction
+from mesokit.theory.rod_friction import cylinder_friction as cylinder_friction
+from mesokit.theory.rotational_friction import angular_vacf_tail as angular_vacf_tail
+from mesokit.theory.rotational_friction import orientation_memory as orientation_memory
+from mesokit.theory.rotational_friction import rotational_friction as rotational_friction
 from mesokit.theory.rouse_times import RouseTimes as RouseTimes
 from mesokit.theory.rouse_times import rouse_times as rouse_times
 from mesokit.theory.rouse_times import rouse_times_from_slowest as rouse_times_from_slowest
 from mesokit.theory.self_diffusion import self_diffusion as self_diffusion
-from mesokit.theory.slip_sphere import enskog_friction as enskog_friction
+from mesokit.theory.settling import dilute_settling as dilute_settling
+from mesokit.theory.settling import hindered_settling as hindered_settling
+from mesokit.theory.settling import settling_of_few as settling_of_few
 from mesokit.theory.slip_sphere import slip_sphere_diffusion as slip_sphere_diffusion
+from mesokit.theory.slit_mobility import slit_mobility as slit_mobility
 from mesokit.theory.slope import EndOfSliding as EndOfSliding
 from mesokit.theory.slope import Rolling as Rolling
 from mesokit.theory.slope import Thrown as Thrown
@@ -188,11 +213,17 @@ from mesokit.theory.sonine import sonine_speed_cdf as sonine_speed_cdf
 from mesokit.theory.square_array import square_array_drag as square_array_drag
 from mesokit.theory.square_array import square_array_drag_dilute as square_array_drag_dilute
 from mesokit.theory.square_array import square_array_permeability as square_array_permeability
+from mesokit.theory.squirmers import squirmer_flow as squirmer_flow
+from mesokit.theory.squirmers import squirmer_speed as squirmer_speed
+from mesokit.theory.squirmers import squirmer_speed_in_box as squirmer_speed_in_box
+from mesokit.theory.squirmers import squirmer_speed_inertial as squirmer_speed_inertial
+from mesokit.theory.squirmers import swimmer_diffusion as swimmer_diffusion
 from mesokit.theory.stress_in_time import StressInTime as StressInTime
 from mesokit.theory.stress_in_time import stress_in_time as stress_in_time
 from mesokit.theory.surface import ring_differences as ring_differences
 from mesokit.theory.surface import ring_width as ring_width
 from mesokit.theory.surface import solid_on_solid_steps as solid_on_solid_steps
+from mesokit.theory.suspension_viscosity import suspension_viscosity as suspension_viscosity
 from mesokit.theory.sweeps import packing_sweeps as packing_sweeps
 from mesokit.theory.sweeps import slowest_wave as slowest_wave
 from mesokit.theory.sweeps import sweep_error as sweep_error
@@ -224,6 +255,10 @@ from mesokit.theory.transverse_modes import transverse_correlation as transverse
 from mesokit.theory.transverse_modes import transverse_viscosity_fit as transverse_viscosity_fit
 from mesokit.theory.trimer import trimer_bond_length as trimer_bond_length
 from mesokit.theory.trimer import trimer_spring_constant as trimer_spring_constant
+from mesokit.theory.two_spheres import PairSpeeds as PairSpeeds
+from mesokit.theory.two_spheres import pair_speeds as pair_speeds
+from mesokit.theory.two_spheres import pair_speeds_in_cube as pair_speeds_in_cube
+from mesokit.theory.two_spheres import rotne_prager_in_cube as rotne_prager_in_cube
 from mesokit.theory.velocity_autocorrelation import vacf_modes as vacf_modes
 from mesokit.theory.velocity_autocorrelation import vacf_molecular_chaos as vacf_molecular_chaos
 from mesokit.theory.velocity_autocorrelation import vacf_tail as vacf_tail

@@ -26,3 +26,19 @@ def barometric_mean(scale: float, depth: float) -> float:
     (2.0, 5.0)
     """
     return float(scale - depth / np.expm1(min(depth / scale, 700.0)))
+
+
+def buoyant_scale(mass: float, displaced_mass: float, gravity: float, kT: float = 1.0) -> float:
+    """Scale h = kT/((M - M_d) g) of the heights of a body that fluid bears.
+
+    Parameters: `mass` M; `displaced_mass` M_d of the fluid in its volume; `gravity` g, an
+    acceleration of fluid and bodies; `kT`. Negative for bodies that rise. Raises ValueError where
+    nothing draws it. Source: J. Perrin, Ann. Chim. Phys. 18, 5 (1909).
+
+    >>> round(buoyant_scale(500.0, 400.0, gravity=0.002), 3)
+    5.0
+    """
+    weight = (mass - displaced_mass) * gravity
+    if weight == 0:
+        raise ValueError("mass, displaced_mass, gravity: expected a weight that is not 0")
+    return kT / weight

@@ -5,29 +5,31 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.theory._check import positive
+from mesokit.theory._check import not_negative, positive
 
 TERMS, POINTS = 28, 112  # of the series, and on each side of the cell: 1e-3 at c = 0.7, then worse
 DENSEST = 0.7
 Array = NDArray[np.float64]
 
 
-def square_array_drag(concentration: float) -> float:
+def square_array_drag(concentration: float, slip: float = 0.0) -> float:
     """Force F on a cylinder for each length, over eta U: F/(eta U).
 
     Parameters: `concentration` c, part of the volume that is cylinder, pi R^2/L^2. U is the
     superficial velocity (volume flux over the whole cross-section, cylinders included), and F holds
     all the force that drives the flow, rho g L^2: where only the fluid is driven, the cylinder
-    itself feels the part 1 - c of it. Raises ValueError for c not above 0 or above 0.7.
-    Source: A. S. Sangani and A. Acrivos, Int. J. Multiphase Flow 8, 193 (1982), Table 1, whose
-    values (c from 0.05 to 0.7) this gives to all their digits: the stream function is the series of
-    solutions of the biharmonic equation that do not slip at the cylinder, fitted to the symmetry
-    of the flow at the edge of the cell. Valid for Reynolds numbers well below 1.
+    itself feels the part 1 - c of it. `slip` b/R, slip length over radius. Raises ValueError for c
+    not above 0 or above 0.7, and for b below 0. Source: A. S. Sangani and A. Acrivos, Int. J.
+    Multiphase Flow 8, 193 (1982), Table 1, whose values (no slip, c from 0.05 to 0.7) this gives to
+    all their digits: the stream function is the series of solutions of the biharmonic equation that
+    obey the surface of the cylinder, fitted to the symmetry of the flow at the edge of the cell.
+    Valid for Reynolds numbers well below 1.
 
     >>> [round(square_array_drag(c), 2) for c in (0.05, 0.2, 0.5)]
     [15.56, 51.53, 532.55]
     """
     positive(concentration=concentration)
+    not_negative(slip=slip)
     if concentration > DENSEST:
         raise ValueError(f"concentration = {concentration!r}: expected at most {DENSEST}")
     edge = 0.5 * math.sqrt(math.pi / concentration)  # half the pitch, over the radius
@@ -37,7 +39,7 @@ def square_array_drag(concentration: float) -> float:
     # function, vorticity or their slopes at points of two edges of the cell. The series is fitted
     # to their values there.
     for n in range(1, 2 * TERMS, 2):
-        for powers, logarithm in _no_slip(n):
+        for powers, logarithm in _at_surface(n, slip):
             top = _flow(n, powers, logarithm, along, np.full(POINTS, edge))
             side = _flow(n, powers, logarithm, np.full(POINTS, edge), along)
             # no flow and no shear across the top; the flow leaves the side straight
@@ -81,14 +83,19 @@ def square_array_permeability(concentration: float, pitch: float = 1.0) -> float
 Powers = list[tuple[float, int]]  # (coefficient, power) of r
 
 
-def _no_slip(n: int) -> list[tuple[Powers, float]]:
-    """Radial parts of the two stream functions of sin(n theta) that do not slip at r = 1, and
-    their coefficient of r ln r."""
+def _at_surface(n: int, slip: float) -> list[tuple[Powers, float]]:
+    """Radial parts of the two stream functions of sin(n theta) that obey the surface r = 1, and
+    their coefficient of r ln r.
+
+    The value f vanishes, and the slip f'(1 + b) - b f''; r^n and r^-n make them do so.
+    """
+    stretch = 2 * n * (1 + 2 * slip)
+    pairs: list[tuple[Powers, float]] = []
     if n == 1:
-        return [([(-0.5, 1), (0.5, -1)], 1.0), ([(1.0, 3), (-2.0, 1), (1.0, -1)], 0.0)]
-    pairs = []
-    for power in (n + 2, 2 - n):
-        grows = -0.5 * (1 + power / n)  # r^n and r^-n make value and slope vanish
+        pairs.append(([(-1 / stretch, 1), (1 / stretch, -1)], 1.0))
+    for power in (n + 2, 2 - n)[: 2 - len(pairs)]:
+        slipped = power * (1 + 2 * slip - slip * power) + n * (1 + 2 * slip + slip * n)
+        grows = -slipped / stretch
         pairs.append(([(1.0, power), (grows, n), (-1 - grows, -n)], 0.0))
     return pairs
 
