@@ -16,7 +16,7 @@ from mesokit.scalar.random import INITIAL_BODIES
 
 Floats = NDArray[np.float64]
 TRIES = 20_000  # places that are drawn for a body before there is no room
-GAP = 0.3  # of the range of the potential of gaps: drawn bodies are at least so far apart
+GAP = 0.85  # of the range of the potential of gaps: drawn bodies are at least so far apart
 NONE = 1e-3  # cells, without a potential
 
 

@@ -20,7 +20,6 @@ from mesokit.scalar.pointer import address
 
 FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
 NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a run
-SKIN = 0.4  # cells
 ROOM = 2.0  # times as many particles near bodies as there are on average
 PHASE = 0.1  # of the fastest motion of bodies, in radians per sub-step
 MASS_BITS = 40
@@ -168,14 +167,12 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int) -> MovingBodies:
         density=numbers.density,
         substeps=needed_substeps(case),
         lever=2.0 ** math.ceil(math.log2(max(radii.max(), 1.0))),
-        skin=SKIN,
-        reach=travel + state.SPARE + 0.5 * SKIN + shear,
-        travel=travel,
         further=further,
         twice=1,
         grid=Grid(zero, zero, cells, tuple(1.0 / c for c in cells)),
         near_count=np.zeros(near, np.int32),
         near=np.zeros((near, state.MOST_NEAR_CELL), np.int32),
+        clear=np.zeros(near << d, np.uint8),
         partner_count=np.zeros(n, np.int32),
         partners=np.zeros((n, state.MOST_PARTNERS), np.int32),
         values=zeros((threads, most, state.NEAR_COLUMNS)),

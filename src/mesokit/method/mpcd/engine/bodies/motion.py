@@ -10,7 +10,7 @@ from mesokit.kernels.part import stage
 from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.bodies.forces import forces_on
-from mesokit.method.mpcd.engine.bodies.near import box_at_start, keep_lists, note_path
+from mesokit.method.mpcd.engine.bodies.near import box_at_start, keep_lists, note_paths
 from mesokit.method.mpcd.engine.bodies.state import (
     BEGIN,
     BEGIN_TURN,
@@ -75,7 +75,7 @@ def begin_step(worker, now, physics, bodies):
         barrier(worker)
     for i in range(first, last):
         begin_motion(bodies, physics, i)
-        note_path(worker, now, physics, bodies, i)
+    note_paths(worker, now, physics, bodies)
     barrier(worker)
 
 

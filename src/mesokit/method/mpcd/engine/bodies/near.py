@@ -37,7 +37,6 @@ from mesokit.method.mpcd.engine.bodies.state import (
     STRIDE,
     THREE,
     TIME,
-    TOO_FAR,
     TOO_MANY,
     TURN,
     WHAT,
@@ -56,6 +55,12 @@ from mesokit.scalar.vector import added_scaled, dot, scaled
 
 HALF_DIAGONAL = 0.5 * math.sqrt(3.0)  # of a cell, in 3D
 BEYOND = 1e6  # a path that lists never hold
+LIST_REACH = 1.5  # cells: lists have the bodies whose surface is so near
+LISTS_HOLD = 0.15  # cells: lists are made anew when a surface has gone so far
+PARTNERS_HOLD = 0.5  # cells: the farthest that surfaces may go with one list of partners
+PARTS = 64.0  # of a cell: what is clear is kept in whole numbers of these
+FAR = np.uint8(LIST_REACH * PARTS)
+ALLOWANCE = 1  # where scratch memory has the farthest that surfaces go with one list
 
 
 @scalar
@@ -80,17 +85,12 @@ def path_of_surface(bodies, i, time):
 
 @scalar
 def keep_lists(worker, now, physics, bodies):
-    """Make lists anew if a surface has gone half of the way that they have room for."""
+    """Make lists anew if a surface has gone far since they were made."""
     first, last = share(len(bodies.rows), worker.thread, worker.threads)
     farthest = BEYOND if slides(now.box) else 0.0
     for i in range(first, last):
         farthest = max(farthest, bodies.rows[i, PATH])
-    bodies.work[worker.thread, 0] = farthest
-    barrier(worker)
-    for t in range(worker.threads):
-        farthest = max(farthest, bodies.work[t, 0])
-    barrier(worker)
-    if farthest > 0.5 * bodies.skin:
+    if farthest_of_all(worker, bodies, farthest) > LISTS_HOLD:
         box = box_at_start(now, physics)
         list_by_cells(worker, box, bodies, physics.zero)
         for i in range(first, last):
@@ -101,14 +101,29 @@ def keep_lists(worker, now, physics, bodies):
 
 
 @scalar
-def note_path(worker, now, physics, bodies, i):
-    """Add the path of the surface of body i in this step to what its lists have room for."""
-    path = path_of_surface(bodies, i, physics.timestep)
-    if not path <= 0.5 * bodies.skin:
-        note(bodies.counters[worker.thread], now.counter.step, TOO_FAR, i + 1)
-    bodies.rows[i, PATH] += path
-    # Hits may change the motion of this step; images may slide.
-    bodies.rows[i, STRIDE] = 2.0 * path + SPARE + slide_of(now.box) * physics.timestep
+def farthest_of_all(worker, bodies, farthest):
+    """The largest of a number of each thread."""
+    bodies.work[worker.thread, 0] = farthest
+    barrier(worker)
+    for t in range(worker.threads):
+        farthest = max(farthest, bodies.work[t, 0])
+    barrier(worker)
+    return farthest
+
+
+@scalar
+def note_paths(worker, now, physics, bodies):
+    """How far surfaces go in this step, and at most have gone since lists were made."""
+    first, last = share(len(bodies.rows), worker.thread, worker.threads)
+    farthest = 0.0
+    for i in range(first, last):
+        path = path_of_surface(bodies, i, physics.timestep)
+        # Hits may change the motion of this step; images may slide.
+        bodies.rows[i, STRIDE] = 2.0 * path + SPARE + slide_of(now.box) * physics.timestep
+        farthest = max(farthest, bodies.rows[i, PATH] + bodies.rows[i, STRIDE])
+        bodies.rows[i, PATH] += path
+    farthest = farthest_of_all(worker, bodies, farthest)
+    bodies.work[worker.thread, ALLOWANCE] = farthest
 
 
 @by_type
@@ -128,11 +143,13 @@ def slides(box):
 
 @seldom
 def list_by_cells(worker, box, bodies, zero):
-    """The bodies near each cell of this thread's share of the cells."""
-    cells = len(bodies.near_count) - 1
+    """The bodies near each cell of this thread's share of the cells, and what is clear there."""
+    cells, d = len(bodies.near_count) - 1, len(zero)
     first, last = share(cells, worker.thread, worker.threads)
     for cell in range(first, last):
         bodies.near_count[cell] = 0
+        for cube in range(1 << d):
+            bodies.clear[(cell << d) + cube] = FAR
     # Body by body, the cells of a cube about it. A thread writes the lists of its own cells only,
     # and bodies come in the order of their numbers.
     for i in range(len(bodies.rows)):
@@ -143,11 +160,11 @@ def list_by_cells(worker, box, bodies, zero):
 def mark_around(bodies, box, i, mine, zero):
     """Put body i on the lists of those of my cells that its surface comes near."""
     d, x, radius = len(zero), load(bodies.rows, i, PLACE, zero), of_kind(bodies, i, RADIUS)
-    reach = bodies.reach + bodies.skin + HALF_DIAGONAL + (0.5 if slides(box) else 0.0)
+    reach = LIST_REACH + HALF_DIAGONAL + (0.5 if slides(box) else 0.0)
     low, high = zero, zero
     for k in range(d):
-        low = with_item(low, k, floor(x[k] - radius - reach))
-        high = with_item(high, k, floor(x[k] + radius + reach))
+        low = with_item(low, k, floor(x[k] - radius - LIST_REACH))
+        high = with_item(high, k, floor(x[k] + radius + LIST_REACH))
     depth = int(high[d - 1] - low[d - 1]) + 1 if d == 3 else 1  # along z
     middle, kind, q = zero, bodies.kind[i], load(bodies.rows, i, TURN, state.FOUR)
     for c in range(depth):
@@ -162,19 +179,34 @@ def mark_around(bodies, box, i, mine, zero):
                     at = with_item(middle, 0, middle[0] + (half - 0.5 if slides(box) else 0.0))
                     here, _, _ = fold(box, at, zero, zero)
                     cell = np.int64(cell_index(here, bodies.grid))
-                    if mine[0] <= cell < mine[1] and is_near(bodies, kind, q, x, middle, reach):
-                        put_on_list(bodies, cell, i)
+                    if mine[0] <= cell < mine[1]:
+                        away = added_scaled(middle, -1.0, x)
+                        if distance_of(bodies, kind, q, away) <= reach:
+                            put_on_list(bodies, cell, i)
+                            clear_cubes(bodies, box, kind, q, cell, away)
 
 
 @scalar
-def is_near(bodies, kind, q, x, place, reach):
-    """Whether the surface of a body comes so near to a place; deep inside it does not."""
-    away = added_scaled(place, -1.0, x)
+def distance_of(bodies, kind, q, s):
+    """Distance of a place at an arm from the surface of a body of a kind, negative inside."""
     if bodies.kinds[kind, IS_BALL] > 0.5:
-        c = math.sqrt(dot(away, away)) - bodies.kinds[kind, RADIUS]
-    else:
-        c, _ = state.clearance(bodies, kind, state.turned_back(q, away))
-    return c <= reach
+        return math.sqrt(dot(s, s)) - bodies.kinds[kind, RADIUS]
+    c, _ = state.clearance(bodies, kind, state.turned_back(q, s))
+    return c
+
+
+@scalar
+def clear_cubes(bodies, box, kind, q, cell, s):
+    """Lower what is clear around the halves of a cell whose middle is at an arm."""
+    d = len(s)
+    for cube in range(1 << d):
+        at = s
+        for k in range(d):
+            at = with_item(at, k, s[k] + (0.25 if (cube >> k) & 1 else -0.25))
+        c = distance_of(bodies, kind, q, at) - 0.5 * HALF_DIAGONAL - (0.5 if slides(box) else 0.0)
+        clear = np.uint8(int(min(max(c, 0.0), LIST_REACH) * PARTS))
+        place = (cell << d) + cube
+        bodies.clear[place] = min(bodies.clear[place], clear)
 
 
 @scalar
@@ -196,7 +228,7 @@ def list_partners(bodies, box, i, zero):
     x, found = load(bodies.rows, i, PLACE, zero), 0
     for j in range(len(bodies.rows)):
         if j != i:
-            reach = of_kind(bodies, i, RADIUS) + of_kind(bodies, j, RADIUS) + 2.0 * bodies.skin
+            reach = of_kind(bodies, i, RADIUS) + of_kind(bodies, j, RADIUS) + 2.0 * PARTNERS_HOLD
             reach += max(of_kind(bodies, i, RANGE), of_kind(bodies, j, RANGE))
             other, _ = image_near(box, load(bodies.rows, j, PLACE, zero), x)
             away = added_scaled(other, -1.0, x)
@@ -225,26 +257,26 @@ def choose_near(worker, now, physics, bodies, strip, s, count, marks):
     Their lanes become the first entries of `marks`; returns their number.
     """
     zero, thread, candidates, chosen = physics.zero, worker.thread, 0, 0
-    d, box = len(zero), box_at_start(now, physics)
-    # Coarse test of all lanes at t, before the flight, by the lists of cells. No branches.
+    d, box, allowance = len(zero), box_at_start(now, physics), bodies.work[thread, ALLOWANCE]
+    # Coarse test of all lanes at t, before the flight, by what is clear around cubes. No branches.
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        listed = bodies.near_count[cell_of(bodies, box, r)] != 0
-        marks[i] = np.int64(listed | (not path_of(bodies, physics, r, v) <= bodies.travel))
+        clear = float(bodies.clear[cube_of(bodies, box, r)]) * (1.0 / PARTS) - allowance
+        marks[i] = np.int64(not path_of(bodies, physics, r, v) < clear)
     # Compact the lanes of candidates to the front, again without branches.
     for i in range(count):
         mark = marks[i]
         marks[candidates] = i
         candidates += mark
-    # Exact test of the few candidates, by the distances from the bodies on their lists.
+    # Exact test of the few candidates, by the bodies on their lists.
     for j in range(candidates):
         i = marks[j]
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         path = path_of(bodies, physics, r, v)
         cell = np.int64(cell_of(bodies, box, r))
-        if not path <= bodies.travel or bodies.near_count[cell] == EVERY_BODY:
+        if not path + allowance < LIST_REACH or bodies.near_count[cell] == EVERY_BODY:
             cell = np.int64(EVERY_BODY)
-        if may_meet(bodies, box, cell, r, path):
+        if may_meet(bodies, physics, box, cell, r, v, path):
             n = bodies.counters[thread, COUNT]
             if n == bodies.values.shape[1]:
                 note(bodies.counters[thread], now.counter.step, TOO_MANY, 0)
@@ -264,16 +296,33 @@ def choose_near(worker, now, physics, bodies, strip, s, count, marks):
 
 
 @by_type
-def cell_of(bodies, box, r):
-    """The cell of the lists at a place; under shear that of its image in the box."""
+def in_lists(box, r):
+    """The image of a place whose cell has a list: under shear that in the box."""
     if box.instance_class in state.SLIDING:
 
-        def folded(bodies, box, r):
+        def folded(box, r):
             here, _, _ = fold(box, r, r, scaled(0.0, r))
-            return cell_index(here, bodies.grid)
+            return here
 
         return folded
-    return lambda bodies, box, r: cell_index(r, bodies.grid)
+    return lambda box, r: r
+
+
+@scalar
+def cell_of(bodies, box, r):
+    """The cell of the lists at a place."""
+    return cell_index(in_lists(box, r), bodies.grid)
+
+
+@scalar
+def cube_of(bodies, box, r):
+    """The half of a cell in each direction, of which it is known what is clear."""
+    here = in_lists(box, r)
+    cell, cube = np.int64(cell_index(here, bodies.grid)), np.int64(0)
+    for k in range(len(here)):
+        upper = here[k] - floor(here[k]) >= 0.5
+        cube |= np.int64(upper) << k
+    return (cell << len(here)) + cube
 
 
 @scalar
@@ -289,20 +338,43 @@ def body_near(bodies, cell, n):
 
 
 @seldom
-def may_meet(bodies, box, cell, r, path):
-    """Whether a particle at r that flies so far may meet a body on the list of its cell."""
+def may_meet(bodies, physics, box, cell, r, v, path):
+    """Whether a particle at r, which flies so far, may meet a body on the list of its cell.
+
+    It follows from places and velocities alone. A ball that is larger by what its motion may still
+    change must lie on the straight flight of a particle that no force and no wall bends.
+    """
+    time = physics.timestep
+    straight = path <= time * math.sqrt(dot(v, v))
     for n in range(bodies_near(bodies, cell)):
         i = body_near(bodies, cell, n)
-        x, _ = image_near(box, load(bodies.rows, i, PLACE, r), r)
-        away = added_scaled(r, -1.0, x)
-        stride = path + bodies.rows[i, STRIDE]
-        bound = of_kind(bodies, i, RADIUS) + stride
-        square = dot(away, away)
-        if not square > bound * bound:
-            if of_kind(bodies, i, IS_BALL) > 0.5:
+        x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
+        away, stride = added_scaled(r, -1.0, x), bodies.rows[i, STRIDE]
+        bound, square = of_kind(bodies, i, RADIUS) + path + stride, dot(away, away)
+        if square > bound * bound:
+            continue
+        if of_kind(bodies, i, IS_BALL) > 0.5:
+            u = state.with_shear(load(bodies.rows, i, MEAN_VELOCITY, r), speed)
+            w = added_scaled(v, -1.0, u)
+            if not straight or meets_ball(of_kind(bodies, i, RADIUS) + stride, away, w, time):
                 return True
+        else:
             q = load(bodies.rows, i, TURN, state.FOUR)
             c, _ = state.clearance(bodies, bodies.kind[i], state.turned_back(q, away))
-            if not c > stride:
+            if not c > path + stride:
                 return True
     return False
+
+
+@scalar
+def meets_ball(radius, y, w, time):
+    """Whether a straight flight from y enters a ball about 0 within a time, or starts in it."""
+    approach, square = dot(y, w), dot(w, w)
+    c = dot(y, y) - radius * radius
+    if c <= 0.0:
+        return True
+    if approach >= 0.0:
+        return False
+    # The distance is least at the time -approach/square, or at the end of the flight.
+    end = min(-approach / square, time)
+    return c + end * (2.0 * approach + end * square) <= 0.0

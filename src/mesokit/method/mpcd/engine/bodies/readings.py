@@ -27,7 +27,6 @@ from mesokit.method.mpcd.engine.bodies.state import (
     SECOND_HITS,
     SPIN,
     STEP,
-    TOO_FAR,
     TORQUE,
     TURN,
     VELOCITY,
@@ -188,11 +187,6 @@ class BodyReadings:
             return
         first = noted[np.lexsort((noted[:, WHICH], noted[:, STEP]))][0]
         step, what, which = int(first[STEP]), int(first[WHAT]), int(first[WHICH])
-        if what == TOO_FAR:
-            raise RunError(
-                f"step {step}: body {which} goes farther than {0.5 * self.state_of.skin:g} cells in "
-                "a timestep; expected heavier bodies, smaller forces or a shorter fluid.timestep"
-            )
         if what == CAUGHT:
             raise RunError(
                 f"step {step}: particle {which - 1} is caught between bodies; expected a longer "

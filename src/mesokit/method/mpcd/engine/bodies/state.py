@@ -46,7 +46,7 @@ NEAR_NUMBERS = 8
 
 MOST_NEAR_CELL = 8  # bodies on the list of a cell; with more, all bodies are tried
 EVERY_BODY = -1
-SPARE = 0.05  # cells by which hits may lengthen the path of a body in a step, beyond doubling it
+SPARE = 0.01  # cells by which hits may lengthen the path of a body in a step, beyond doubling it
 NO_BODY = -1
 MOST_PARTNERS = 48  # bodies on the list of another one
 SUMS = 27  # whole numbers of a body that threads add up
@@ -55,7 +55,7 @@ GAS_PLACE, GAS_VELOCITY, GAS_KEPT, GAS_ARM, GAS_SPEED = 0, 3, 6, 9, 12
 GAS_COLUMNS = 13
 # Counters of a thread.
 COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT, STEP, WHAT, WHICH = 0, 1, 2, 3, 4, 8, 9, 10
-TOO_FAR, TOO_MANY, TOO_CLOSE, CAUGHT = 1, 2, 3, 4
+TOO_MANY, CAUGHT = 1, 2
 COUNTERS = 16
 WORK = 256  # floats of scratch memory of a thread
 
@@ -67,12 +67,11 @@ class MovingBodies(NamedTuple):
     and parts: code and address of the numbers of the primitives that kinds consist of.
     mass_scale: whole numbers per unit of mass in sums; cells, density: of the fluid;
     substeps: of the motion of bodies.
-    lever: a power of two not below the largest radius: arms are counted in it. skin: how far
-    surfaces may go before lists are made anew; reach: from a cell of the lists to a surface;
-    travel: how far nearly all particles fly in a timestep; further: what walls may add to that.
-    twice: 1 where hits are found once more with the mean motion, else 0.
+    lever: a power of two not below the largest radius: arms are counted in it. further: what walls
+    may add to the path of a particle in a timestep. twice: 1 where hits are found once more with the mean motion, else 0.
     grid: cells of the box, without shift; near_count (cells + 1,), near (cells + 1,
-    MOST_NEAR_CELL): the bodies near each. partner_count (bodies,), partners (bodies,
+    MOST_NEAR_CELL): the bodies near each; clear (cells + 1, 2^d): the distance that is clear around
+    each half of it in each direction. partner_count (bodies,), partners (bodies,
     MOST_PARTNERS): other bodies that may come near.
     values (threads, most, NEAR_COLUMNS), numbers (threads, most, NEAR_NUMBERS): particles near.
     sums (threads, bodies, SUMS): of the hits in hand; taken (threads, bodies, 6): impulses, in
@@ -95,14 +94,12 @@ class MovingBodies(NamedTuple):
     density: float
     substeps: int
     lever: float
-    skin: float
-    reach: float
-    travel: float
     further: float
     twice: int
     grid: tuple
     near_count: Any
     near: Any
+    clear: Any
     partner_count: Any
     partners: Any
     values: Any
