@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mesokit import Spheroid
+from mesokit import Ellipse, Spheroid, Surface
 from mesokit.geometry import primitive, region
 from mesokit.scalar.pointer import address
 from tests.helpers.shapes import from_ellipse, meets, solids_of
@@ -118,6 +118,16 @@ def test_normals_beside_the_axis_are_unit_vectors(axis, off):
         assert abs(np.linalg.norm(normal) - 1) < 1e-14
         foot, _ = body.asked(body.at(height, off) - distance * normal)
         assert abs(foot) < 1e-13 * body.along
+
+
+def test_turning_moves_a_surface_along_itself_about_its_axis_alone():
+    turning = Surface(rotation=0.7)
+    spheroid = Spheroid((6, 5, 4.5), 2.0, 3.0, axis=(1, 0, 2), surface=turning)
+    fastest, across = solids_of((spheroid,), 3).motion[0]
+    assert 1.0 < fastest < 1.5
+    assert across < 1e-12
+    ellipse = Ellipse((6, 5), (6, 4), surface=turning)
+    assert solids_of((ellipse,), 2).motion[0][1] > 0.5
 
 
 def test_straight_into_a_spheroid():
