@@ -47,9 +47,11 @@ def examples(d: int, folder: Path) -> list[tuple[str, Any]]:
     ]
     if d == 2:
         found += [ball(middle, radius), mesokit.Rectangle(middle, sides, 27.0)]
+        found.append(mesokit.Ellipse(middle, (2 * radius, radius), 27.0))
         found.append(picture(middle, radius, folder))
     else:
         found += [ball(middle, radius), mesokit.Cuboid(middle, sides, 27.0)]
+        found.append(mesokit.Spheroid(middle, radius, 0.5 * radius, axis=(1, 2, -2)))
         found.append(mesokit.Cylinder(middle, radius, axis="x", fluid="inside"))
     found.append(mesh(middle, radius, folder))
     return [(wall.shape, wall) for wall in found]

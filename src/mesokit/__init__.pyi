@@ -33,6 +33,7 @@ from mesokit.geometry.shape.cosine_channel import CosineChannel as CosineChannel
 from mesokit.geometry.shape.cuboid import Cuboid as Cuboid
 from mesokit.geometry.shape.cylinder import Cylinder as Cylinder
 from mesokit.geometry.shape.disk import Disk as Disk
+from mesokit.geometry.shape.ellipse import Ellipse as Ellipse
 from mesokit.geometry.shape.half_space import HalfSpace as HalfSpace
 from mesokit.geometry.shape.intersection import Intersection as Intersection
 from mesokit.geometry.shape.mesh import Mesh as Mesh
@@ -41,6 +42,7 @@ from mesokit.geometry.shape.plates import Plates as Plates
 from mesokit.geometry.shape.rectangle import Rectangle as Rectangle
 from mesokit.geometry.shape.sampled import Sampled as Sampled
 from mesokit.geometry.shape.sphere import Sphere as Sphere
+from mesokit.geometry.shape.spheroid import Spheroid as Spheroid
 from mesokit.geometry.shape.union import Union as Union
 from mesokit.geometry.shape_protocol import Shape as Shape
 from mesokit.geometry.shape_protocol import Simple as Simple

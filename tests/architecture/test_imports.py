@@ -119,8 +119,8 @@ BY_NAME = {
     "case/describe/shown.py", "seam/result.py", "io/optional.py", "study/work.py",
     "geometry/shape/mesh.py", "cli/commands.py", "kernels/made_of.py",
 }  # fmt: skip
-MOST_FILES = 16  # in a folder of machinery; of laws, quantities and pictures there may be more
-LONG = ("theory", "observe", "method/mpcd/observe", "report/flow", "io")
+MOST_FILES = 16  # in a folder of machinery; of laws, shapes, quantities and pictures more
+LONG = ("theory", "observe", "method/mpcd/observe", "report/flow", "io", "geometry/shape")
 LONG += ("method/kinetic_monte_carlo/model", "method/kinetic_monte_carlo/observe")
 LONG += ("method/spheres/common/observe",)
 # module: the only places in the package that import it, at most one once a backend exists

@@ -21,6 +21,8 @@ SPACE = "[run]\nsteps = 1\n[box]\nsize = [12, 10, 8]\n"
 DISK = 'shape = "disk"\ncentre = [6, 5]\nradius = 2\n'
 BALL = 'shape = "sphere"\ncentre = [6, 5, 4]\nradius = 2\n'
 BOX = 'shape = "rectangle"\ncentre = [6, 5]\nsize = [4, 3]\n'
+OVAL = 'shape = "ellipse"\ncentre = [6, 5]\nsize = [4, 3]\n'
+GRAIN = 'shape = "spheroid"\ncentre = [6, 5, 4]\nradius = 2\nhalf_length = 3\naxis = [0, 0, 1]\n'
 FLOOR = 'shape = "half-space"\npoint = [0, 3]\nnormal = [0, 1]\n'
 WAVES = 'shape = "cosine-channel"\nwidth = 4\namplitude = 1\n'
 BALL_FILE = 'shape = "mesh"\nfile = "ball.ply"\nposition = [6, 5, 4]\n'
@@ -58,6 +60,20 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
     "capsule without length": (
         PLANE, ['shape = "capsule"\nstart = [1, 1]\nend = [1, 1]\nradius = 1'],
         ("end = start", "another place"),
+    ),
+    "an ellipse in 3D": (SPACE, [OVAL], ("not in 3D", "'spheroid'")),
+    "an ellipse without width": (PLANE, [OVAL.replace("3]", "0]")], ("wall[#1].size", "positive")),
+    "a spheroid without an axis": (
+        SPACE, [GRAIN.replace("0, 1", "0, 0")], ("wall[#1].axis", "three numbers, not all zero"),
+    ),
+    "a spheroid along a plane": (
+        SPACE, [GRAIN.replace("0, 1]", "1]")], ("wall[#1].axis", "three numbers, not all zero"),
+    ),
+    "a spheroid without length": (
+        SPACE, [GRAIN.replace("= 3", "= 0")], ("wall[#1].half_length = 0", "above 0"),
+    ),
+    "a spheroid without a radius": (
+        SPACE, [GRAIN.replace("radius = 2", "radius = -2")], ("wall[#1].radius = -2", "above 0"),
     ),
     "closed channel": (PLANE, [WAVES.replace("= 1", "= 2")], ("amplitude", "half the width")),
     "channel along itself": (PLANE, [WAVES + 'across = "x"'], ("across = 'x'", "another axis")),

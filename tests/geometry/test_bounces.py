@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from mesokit import Cylinder, Disk, Plates, Rectangle, Surface
+from mesokit import Cylinder, Disk, Plates, Rectangle, Spheroid, Surface
 from mesokit.geometry.solids.bodies import COLUMNS, SURFACES
 from mesokit.geometry.solids.tables import RULES
 from tests.geometry.test_flights import KINDS, flight
@@ -82,6 +82,9 @@ MOVING = {
     "turning disk": (Disk((6, 5), 2, surface=Surface(rotation=0.7)), 2),
     "turning cylinder": (Cylinder((6, 5, 4.5), 2, axis="x", surface=Surface(rotation=0.7)), 3),
     "turning sphere": (ROUND[3]((6, 5, 4.5), 2, surface=Surface(rotation=(0.2, -0.5, 0.3))), 3),
+    "turning spheroid": (
+        Spheroid((6, 5, 4.5), 2, 3, axis=(1, 0, 2), surface=Surface(rotation=0.7)), 3,
+    ),
     "sliding block": (Rectangle((6, 1), (12, 2), surface=Surface(velocity=(0.4, 0))), 2),
     "turning pipe": (
         Cylinder((6, 5, 4.5), 3, fluid="inside", surface=Surface(rotation=-0.4)), 3,

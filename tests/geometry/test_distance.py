@@ -17,10 +17,12 @@ from mesokit import (
     Cuboid,
     Cylinder,
     Disk,
+    Ellipse,
     HalfSpace,
     Intersection,
     Rectangle,
     Sphere,
+    Spheroid,
     Union,
 )
 from tests.helpers.shapes import (
@@ -32,6 +34,7 @@ from tests.helpers.shapes import (
     SIZE,
     anywhere,
     example,
+    from_ellipse,
     on_surface,
     solids_of,
     walls_of,
@@ -51,13 +54,25 @@ def from_ball(r, centre=FIRST, radius=1.9):
     return np.linalg.norm(periodic(r, centre), axis=1) - radius
 
 
+def turned(x, degrees):
+    """Vectors in the frame that is turned about z."""
+    turn = np.exp(-1j * math.radians(degrees)) * (x[:, 0] + 1j * x[:, 1])
+    return np.stack([turn.real, turn.imag, *x.T[2:]], axis=1)
+
+
 def from_box(r, angle=0.0):
     half = 0.5 * np.array((3.6, 2.8, 3.1)[: r.shape[1]])
-    x = periodic(r, FIRST)
-    turn = np.exp(-1j * math.radians(angle)) * (x[:, 0] + 1j * x[:, 1])
-    x[:, 0], x[:, 1] = turn.real, turn.imag
-    q = np.abs(x) - half
+    q = np.abs(turned(periodic(r, FIRST), angle)) - half
     return np.linalg.norm(np.maximum(q, 0), axis=1) + np.minimum(q.max(axis=1), 0)
+
+
+def from_oval(r):
+    return from_ellipse(1.8, 1.4, *np.abs(turned(periodic(r, FIRST), 27.0)).T)
+
+
+def from_spheroid(r):
+    x, axis = periodic(r, FIRST), np.array([1.0, 2.0, -2.0]) / 3
+    return from_ellipse(2.7, 1.9, np.abs(x @ axis), np.linalg.norm(np.cross(x, axis), axis=1))
 
 
 def from_line(r):
@@ -91,6 +106,8 @@ FORMULAS = {
     "rectangle": (lambda r: from_box(r, 27.0), 1e-12),
     "cuboid": (lambda r: from_box(r, 27.0), 1e-12),
     "capsule": (from_line, 1e-5),
+    "ellipse": (from_oval, 1e-12),
+    "spheroid": (from_spheroid, 1e-12),
     "cosine-channel": (from_cosines, None),
     "union": (lambda r: np.minimum(from_ball(r), from_ball(r, SECOND, 1.4)), 1e-12),
     "intersection": (lambda r: np.maximum(from_ball(r), from_ball(r, SECOND, 1.4)), 1e-12),
@@ -182,7 +199,9 @@ def test_sampled_gradients_are_near_one_at_the_surface(tmp_path):
         assert 0.85 < rise.min() / 0.1 <= rise.max() / 0.1 < 1.0 + 1e-9
 
 
-PLACED = ("disk", "sphere", "capsule", "rectangle", "cuboid", "cylinder", "sampled")
+PLACED = (
+    "disk", "sphere", "capsule", "rectangle", "cuboid", "cylinder", "sampled", "ellipse", "spheroid"
+)  # fmt: skip
 
 
 @given(
@@ -247,12 +266,14 @@ VOLUMES = {
     "disk inside": (Disk((5, 5), 4, fluid="inside"), np.pi * 16),
     "rectangle": (Rectangle((11.9, 0.1), (3.6, 2.8), 27), 120 - 3.6 * 2.8),
     "capsule": (Capsule((2, 3), (8, 6), 1), 120 - np.pi - 2 * math.hypot(6, 3)),
+    "ellipse": (Ellipse((11.9, 0.1), (6.4, 4.8), 27), 120 - np.pi * 3.2 * 2.4),
     "waves": (WAVES, 12 * 5),
     "winding": (dataclasses.replace(WAVES, winding=True), 12 * 5),
     "array": (Array(of=Disk((1, 1), 0.8), repeat=(4, 5)), 120 - 20 * np.pi * 0.64),
     "two disks": (Union((Disk((3, 3), 1), Disk((8, 8), 1.5))), 120 - np.pi * 3.25),
     "half disk": (Intersection((Disk((5, 5), 3), HalfSpace((5, 5), (0, 1)))), 120 - np.pi * 4.5),
     "sphere": (Sphere((0, 0, 8.9), 2.2), 1080 - 4 / 3 * np.pi * 2.2**3),
+    "spheroid": (Spheroid((0, 0, 8.9), 3, 2, axis=(1, 2, 3)), 1080 - 4 / 3 * np.pi * 9 * 2),
     "cylinder": (Cylinder((1, 9, 3), 2), 1080 - 9 * 4 * np.pi),
     "pipe": (Cylinder((6, 5, 4.5), 4, axis="x", fluid="inside"), 12 * 16 * np.pi),
     "cuboid": (Cuboid((6, 0, 0), (3.6, 2.8, 3.1), 27), 1080 - 3.6 * 2.8 * 3.1),
@@ -266,7 +287,7 @@ VOLUMES = {
 @pytest.mark.parametrize("name", VOLUMES)
 def test_free_volume(name):
     wall, expected = VOLUMES[name]
-    d = 3 if name in ("sphere", "cylinder", "pipe", "cuboid", "rod") else 2
+    d = 3 if name in ("sphere", "cylinder", "pipe", "cuboid", "rod", "spheroid") else 2
     got = solids_of((wall,), d).free_volume
     assert abs(got - expected) < 3e-3 * abs(math.prod(SIZE[d]) - expected)
     assert solids_of(walls_of(wall, d), d).open_cells.sum() == got

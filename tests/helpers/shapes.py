@@ -43,8 +43,9 @@ SCALE = 2.0**44
 # Values of fields, by their names; vectors have as many numbers as the box has axes.
 PLACES = {"centre": FIRST, "point": FIRST, "start": FIRST, "end": SECOND, "position": FIRST}
 VECTORS = PLACES | {"size": (3.6, 2.8, 3.1), "normal": (0.0, 1.0, 0.0), "repeat": (2, 2, 2)}
-NUMBERS = {"radius": 1.9, "width": 5.0, "amplitude": 0.8, "angle": 27.0, "spacing": 0.25}
-WORDS = {"plates": {"axis": "y"}}  # what one word means for one shape
+NUMBERS = {"radius": 1.9, "half_length": 2.7, "width": 5.0, "amplitude": 0.8, "angle": 27.0}
+NUMBERS |= {"spacing": 0.25}
+WORDS = {"plates": {"axis": "y"}, "spheroid": {"axis": (1, 2, -2)}}  # for one shape
 NAMES = [tag_of(shape)[1] for shape in SHAPES]
 EVERY = [
     (name, d, side)
@@ -149,6 +150,18 @@ def fluid_between(walls, d, rule, timestep, threads=1, seed=1):
         SIZE[d], density=4.3, walls=walls, timestep=timestep, thermostat=MaxwellBoltzmann(),
         force=Uniform(push), measures=("walls",), threads=threads, seed=seed,
     )  # fmt: skip
+
+
+def from_ellipse(half_x: Any, half_y: Any, x: Any, y: Any) -> Any:
+    """Signed distance of places with x, y >= 0 from an ellipse, by bisection of the angle."""
+    low, high = np.zeros(np.shape(x)), np.full(np.shape(x), 0.5 * np.pi)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        out_x, out_y = half_x * np.cos(middle) - x, half_y * np.sin(middle) - y
+        farther = half_y * np.cos(middle) * out_y > half_x * np.sin(middle) * out_x
+        low, high = np.where(farther, low, middle), np.where(farther, middle, high)
+    away = np.hypot(half_x * np.cos(low) - x, half_y * np.sin(low) - y)
+    return np.copysign(away, np.hypot(x / half_x, y / half_y) - 1.0)
 
 
 # --- places and flights -------------------------------------------------------------------------

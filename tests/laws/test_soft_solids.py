@@ -8,6 +8,7 @@ import pytest
 from mesokit import (
     CosineChannel,
     Cuboid,
+    Ellipse,
     Plates,
     PouredStart,
     RandomStart,
@@ -17,6 +18,7 @@ from mesokit import (
     Surface,
     Union,
 )
+from tests.helpers.shapes import from_ellipse
 from tests.helpers.soft_spheres import ROUGH, at_rest, pile, soft
 
 ONE = {"number": 1, "start": RandomStart(), "pair": ROUGH}
@@ -101,6 +103,20 @@ def test_a_ball_rests_in_the_trough_of_a_wave_at_its_nearest_place():
     distance = true_distance(solids, place[0])
     k, _ = SpringDashpot(0.2, contact_time=0.02).constants(1.0)
     assert distance == pytest.approx(0.5 - 1 / k, abs=3e-4)
+
+
+def test_a_ball_rests_at_the_bottom_of_an_ellipse():
+    bowl = Ellipse(centre=[8, 6], size=[12, 8], fluid="inside")
+    engine = soft(
+        [16, 12], walls=[bowl], given=at_rest([[7.0, 4.0]]), gravity=[0.0, -1.0],
+        number=1, start=RandomStart(),
+        pair=SpringDashpot(0.2, contact_time=0.02, friction=0.5, rolling=0.5),
+    )  # fmt: skip
+    engine.advance(100_000)
+    x, y = np.abs(engine.positions()[0] - bowl.centre)
+    k, _ = SpringDashpot(0.2, contact_time=0.02).constants(1.0)
+    assert x < 1.0
+    assert from_ellipse(6.0, 4.0, x, y) == pytest.approx(1 / k - 0.5, abs=3e-4)
 
 
 def true_distance(solids, place):

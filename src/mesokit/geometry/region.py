@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from mesokit.geometry.primitive import KINDS, WIDTH
 
-IMAGED = ("ball", "rod", "capsule", "brick", "sampled")
+IMAGED = ("ball", "rod", "capsule", "brick", "sampled", "ellipsoid")
 Vector = Sequence[float]
 
 
@@ -138,6 +138,12 @@ def capsule(start: Vector, end: Vector, radius: float) -> Region:
     span = [b - a for a, b in zip(start, end, strict=True)]
     square = math.fsum(x * x for x in span)
     return _one("capsule", (*_three(start), *_three(span), radius, 1.0 / square))
+
+
+def ellipsoid(centre: Vector, axis: Vector, along: float, across: float) -> Region:
+    """An ellipse or an ellipsoid of revolution, by half its lengths along the axis and across."""
+    size = math.hypot(*axis)
+    return _one("ellipsoid", (*_three(centre), *_three([x / size for x in axis]), along, across))
 
 
 def brick(centre: Vector, size: Vector, degrees: float = 0.0) -> Region:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from mesokit.case.box import Axis
+from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, option
 from mesokit.case.registry import family
 from mesokit.errors import CaseError
@@ -192,6 +192,21 @@ def positive(lengths: tuple[float, ...] | None) -> tuple[float, ...] | None:
     if lengths is not None and not all(x > 0 for x in lengths):
         raise ValueError("expected positive lengths")
     return lengths
+
+
+def a_direction(axis: Any) -> Any:
+    """A letter or a vector as it is. Raises ValueError if the vector gives no direction in 3D."""
+    if isinstance(axis, tuple) and not (len(axis) == 3 and any(axis)):
+        raise ValueError("expected 'x', 'y', 'z' or three numbers, not all zero")
+    return axis
+
+
+def unit_vector(axis: Any) -> tuple[float, ...]:
+    """Along an axis of the box, given by its letter, or along a vector, in 3D."""
+    if isinstance(axis, str):
+        return tuple(1.0 * (letter == axis) for letter in AXES)
+    size = sum(x * x for x in axis) ** 0.5
+    return tuple(x / size for x in axis)
 
 
 # Families of shapes of which others can be made. One lies within the other.

@@ -9,10 +9,20 @@ be moved alike. The kind of each part is a number at run time: one compiled step
 from types import ModuleType
 from typing import Any
 
-from mesokit.geometry.primitive import ball, brick, capsule, half_space, rod, sampled, wave
+from mesokit.geometry.primitive import (
+    ball,
+    brick,
+    capsule,
+    ellipsoid,
+    half_space,
+    rod,
+    sampled,
+    wave,
+)
 from mesokit.scalar.jit import seldom
 
 PRIMITIVES: tuple[ModuleType, ...] = (half_space, ball, rod, capsule, brick, wave, sampled)
+PRIMITIVES += (ellipsoid,)
 KINDS = {module.__name__.rpartition(".")[2]: number for number, module in enumerate(PRIMITIVES)}
 WIDTH = 12
 CONVEX = tuple(module.CONVEX for module in PRIMITIVES)

@@ -1,14 +1,14 @@
 """A round cylinder without ends, in 3D; with the fluid inside, a round pipe."""
 
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import field_validator
 
-from mesokit.case.box import AXES, Axis
+from mesokit.case.box import Axis
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either, Many
 from mesokit.geometry.region import Region, Room, rod
-from mesokit.geometry.shape_protocol import Centred, Simple
+from mesokit.geometry.shape_protocol import Centred, Simple, a_direction, unit_vector
 
 
 @component
@@ -21,20 +21,12 @@ class Cylinder(Centred, Simple):
     radius: float = param(doc="its radius", unit="a", gt=0)
     axis: Either[Axis, float] = param("z", doc="its direction: 'x', 'y', 'z' or a vector")
 
-    @field_validator("axis")
-    @classmethod
-    def _a_direction(cls, axis: Any) -> Any:
-        if isinstance(axis, tuple) and not (len(axis) == 3 and any(axis)):
-            raise ValueError("expected 'x', 'y', 'z' or three numbers, not all zero")
-        return axis
+    _a_direction = field_validator("axis")(a_direction)
 
     @property
     def direction(self) -> tuple[float, ...]:
         """Unit vector along the axis."""
-        if isinstance(self.axis, str):
-            return tuple(1.0 * (letter == self.axis) for letter in AXES)
-        size = sum(x * x for x in self.axis) ** 0.5
-        return tuple(x / size for x in self.axis)
+        return unit_vector(self.axis)
 
     def body(self, room: Room) -> Region:
         return rod(self.centre, self.direction, self.radius)

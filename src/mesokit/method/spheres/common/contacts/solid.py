@@ -29,7 +29,7 @@ from mesokit.scalar.vector import added_scaled, dot, scaled
 
 MOST = 3  # surfaces that a sphere touches at once
 ALIKE = 0.9  # cosine of the angle between two normals that are nearly the same
-BENT = NUMBER["wave"]  # primitives from here on give a bound of the distance alone
+WAVE, SAMPLED = NUMBER["wave"], NUMBER["sampled"]  # they give a bound of the distance alone
 FEET = 6  # steps to the nearest place of these
 NEARER = 40  # steps of a ray to their surface
 
@@ -78,7 +78,8 @@ def nearest_place(tables, own, time, x, within, one, other):
 def part_place(tables, part, x, bound):
     """Distance of x from a part, and the normal there."""
     n = part_normal(tables, part, x)
-    if whole(word(tables, KINDS), part) < BENT:
+    kind = whole(word(tables, KINDS), part)
+    if kind != WAVE and kind != SAMPLED:
         return bound, n
     distance = bound
     # The nearest place of a bent surface: a ray from x along the normal meets the surface at a
