@@ -28,7 +28,7 @@ class GapPotential:
     It is the potential of Weeks, Chandler and Andersen (1971) of the gap: it diverges at contact
     and ends at `range`."""
 
-    depth: float = param(1.0, doc="energy scale", unit="kT", gt=0, le=1e6)
+    depth: float = param(1.0, doc="energy scale; 0 for no repulsion", unit="kT", ge=0, le=1e6)
     range: float = param(0.5, doc="gap at which it ends", unit="a", ge=0.25, le=10)
 
 
@@ -168,9 +168,9 @@ class Body(ABC):
         default=None, doc="axis of the box about which alone it turns", kw_only=True
     )
     trap: BodyTrap | None = option(default=None, doc="springs that hold it", kw_only=True)
-    interaction: GapPotential | None = option(
+    interaction: GapPotential = option(
         default=GapPotential(),
-        doc="repulsion of bodies and walls by the gap; null for none",
+        doc="repulsion of bodies and walls by the gap; depth = 0 for none",
         kw_only=True,
     )
     swim: Squirming | None = option(

@@ -32,7 +32,7 @@ def first_places(case: Case, periods: Floats) -> tuple[Floats, Floats]:
     for kind in case.bodies:
         rows = slice(done, done + kind.number)
         radii[rows] = kind.solid(d).radius
-        gaps[rows] = GAP * kind.interaction.range if kind.interaction else NONE
+        gaps[rows] = GAP * kind.interaction.range if kind.interaction.depth else NONE
         order.append((kind.start.rule != "given", -kind.solid(d).radius, rows, kind))
         done += kind.number
     placed: list[int] = []
