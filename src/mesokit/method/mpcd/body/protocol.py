@@ -52,6 +52,9 @@ class BodyTrap:
     def __post_init__(self) -> None:
         if self.k == 0 and self.angular == 0:
             raise ValueError("k: missing; a trap needs k, angular or both")
+        for key, needed in (("centre", "k"), ("direction", "angular")):
+            if getattr(self, key) is not None and getattr(self, needed) == 0:
+                raise ValueError(f"{key} = {show(getattr(self, key))}: needs {needed}, a stiffness")
         if self.direction is not None and not any(self.direction):
             raise ValueError(f"direction = {show(self.direction)}: expected a vector other than 0")
 

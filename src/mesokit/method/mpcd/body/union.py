@@ -9,7 +9,7 @@ from mesokit.geometry.region import Region, Room
 from mesokit.geometry.shape_protocol import Simple
 from mesokit.method.mpcd.body.protocol import Body
 
-KINDS = ("ball", "capsule", "brick", "ellipsoid")  # of which the inertia is known
+ENDLESS = ("cylinder", "half-space")  # shapes that have no volume
 
 
 @component
@@ -28,16 +28,16 @@ class UnionBody(Body):
         for i, part in enumerate(self.parts, start=1):
             if part.fluid == "inside":
                 raise ValueError(f"parts[#{i}].fluid = 'inside': expected a solid")
-        for i, part in enumerate(self.parts, start=1):
-            kinds = {one.kind for term in self._body(part) for one in term}
-            if not kinds <= set(KINDS):
+            if name_of(part) in ENDLESS:
                 raise ValueError(
-                    f"parts[#{i}].shape = {name_of(part)!r}: not part of a body that moves"
+                    f"parts[#{i}].shape = {name_of(part)!r}: not part of a body that moves, for it "
+                    "has no end"
                 )
 
-    def _body(self, part: Simple) -> Region:
-        d = 2 if part.dimensions == (2,) else 3
-        return part.body(Room((1,) * d, (False,) * d))
-
     def region(self) -> Region:
-        return region.union(self._body(part) for part in self.parts)
+        return region.union(_body(part) for part in self.parts)
+
+
+def _body(part: Simple) -> Region:
+    d = 2 if part.dimensions == (2,) else 3
+    return part.body(Room((1,) * d, (False,) * d))
