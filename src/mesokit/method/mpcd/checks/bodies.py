@@ -102,9 +102,8 @@ def _vectors(case: Case, kind: Body) -> Iterator[str]:
             yield f"{key} = {show(vector)}: expected {_numbers(d)}"
     if d == 2 and isinstance(kind.torque, tuple):
         yield f"torque = {show(kind.torque)}: expected one number in 2D, about z"
-    if d == 3 and kind.torque is not None:
-        if not isinstance(kind.torque, tuple) or len(kind.torque) != 3:
-            yield f"torque = {show(kind.torque)}: expected 3 numbers in 3D"
+    elif d == 3 and not (kind.torque is None or _is_vector(kind.torque)):
+        yield f"torque = {show(kind.torque)}: expected 3 numbers in 3D"
     if d == 2 and "z" in kind.fixed:
         yield f"fixed = {show(kind.fixed)}: a 2D box has only 'x' and 'y'"
     if kind.hinge is not None and d == 2:
@@ -119,6 +118,10 @@ def _vectors(case: Case, kind: Body) -> Iterator[str]:
                 f"trap.centre = {show(trap.centre)}: outside the box along {axis}; expected 0 to "
                 f"{length:g}"
             )
+
+
+def _is_vector(given: Any) -> bool:
+    return isinstance(given, tuple) and len(given) == 3
 
 
 def _rows(case: Case, kind: Body) -> Iterator[str]:
