@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from abc import ABC, abstractmethod
-from typing import Any, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,8 +113,8 @@ class BodyStart:
 class Body(ABC):
     """A kind of rigid bodies that move in the fluid."""
 
-    dimensions = (2, 3)
-    squirms = False  # whether its surface may have a `swim`
+    dimensions: ClassVar[tuple[int, ...]] = (2, 3)
+    squirms: ClassVar[bool] = False  # whether its surface may have a `swim`
 
     number: int = option(default=1, doc="bodies of this kind", kw_only=True, ge=1, le=2**24)
     name: str | None = option(
