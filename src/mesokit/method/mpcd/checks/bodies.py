@@ -30,7 +30,7 @@ def bodies(case: Case) -> Iterator[str]:
         yield from (f"{key}.{problem}" for problem in _rows(case, kind))
         yield from (f"{key}.{problem}" for problem in _size(case, kind))
         yield from (f"{key}.{problem}" for problem in _counter_force(case, kind))
-        if kind.swim is not None and kind.swim.tumble_rate and kind.shape not in ROUND:
+        if kind.swim is not None and kind.swim.tumble_rate and name_of(kind) not in ROUND:
             yield (
                 f"{key}.swim.tumble_rate = {show(kind.swim.tumble_rate)}: only of a sphere or a "
                 "disk; others have no room to turn at once"
@@ -69,7 +69,7 @@ def _shape(case: Case, kind: Body) -> Iterator[str]:
     if d not in kind.dimensions:
         from mesokit.method.mpcd.body import BODIES
 
-        yield f"shape = {show(kind.shape)}: not in {d}D; expected {_known(BODIES, d)}"
+        yield f"shape = {show(name_of(kind))}: not in {d}D; expected {_known(BODIES, d)}"
     for i, part in enumerate(kind.parts if isinstance(kind, UnionBody) else (), start=1):
         key = f"parts[#{i}]"
         if d not in part.dimensions:
@@ -182,7 +182,7 @@ def _said(kind: Body, radius: float) -> str:
         value = getattr(kind, key, None)
         if value is not None and (key != "radius" or math.isclose(value, radius)):
             return key if key == "parts" else f"{key} = {show(value)}"
-    return f"shape = {show(kind.shape)}"
+    return f"shape = {show(name_of(kind))}"
 
 
 def _counter_force(case: Case, kind: Body) -> Iterator[str]:
