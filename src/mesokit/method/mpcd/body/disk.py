@@ -13,6 +13,7 @@ class DiskBody(Body):
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)
     squirms: ClassVar[bool] = True
+    tumbles: ClassVar[bool] = True
     shape: Literal["disk"] = tag("disk")
     radius: float = param(doc="its radius", unit="a", gt=0)
 

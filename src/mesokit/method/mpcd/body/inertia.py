@@ -15,6 +15,7 @@ from mesokit.geometry.region import Part, Region, moved
 from mesokit.scalar.pointer import address
 
 Floats = NDArray[np.float64]
+FROM_AN_END = ("capsule",)  # kinds of primitives whose place is one of their ends
 GRID = 96  # samples along the longest side of a union whose parts overlap
 
 
@@ -49,15 +50,15 @@ def solid_of(region: Region, planar: bool) -> Solid:
             (m + v * np.outer(c - centre, c - centre) for v, c, m in masses), np.zeros((3, 3))
         )
     moments = np.trace(second) * np.eye(3) - second
-    own = tuple(part for (part,) in moved(region, -centre))
-    radius = max(_extent(part) + float(np.hypot.reduce(_middle(part))) for part in own)
+    own = tuple(part for (part,) in moved(region, (-centre).tolist()))
+    radius = max(_extent(part) + float(np.hypot.reduce(middle_of(part))) for part in own)
     return Solid(volume, moments, own, radius, min(map(_width, own)), overlaps)
 
 
-def _middle(part: Part) -> Floats:
+def middle_of(part: Part) -> Floats:
     """The centre of a primitive."""
     p = np.array(part.numbers)
-    return p[:3] + 0.5 * p[3:6] if part.kind == "capsule" else p[:3]
+    return p[:3] + 0.5 * p[3:6] if part.kind in FROM_AN_END else p[:3]
 
 
 def _extent(part: Part) -> float:
@@ -85,19 +86,19 @@ def _integrals(part: Part, planar: bool) -> tuple[float, Floats, Floats]:
     across = np.diag([1.0, 1.0, 0.0 if planar else 1.0])
     if part.kind == "ball":
         volume = math.pi * p[6] ** 2 if planar else 4.0 / 3.0 * math.pi * p[6] ** 3
-        return volume, _middle(part), volume * p[6] ** 2 / (d + 2) * across
+        return volume, middle_of(part), volume * p[6] ** 2 / (d + 2) * across
     if part.kind == "brick":
         half = np.array(p[3:6])
         volume = float(np.prod(2.0 * half[:d]))
         turn = np.array([[p[6], -p[7], 0.0], [p[7], p[6], 0.0], [0.0, 0.0, 1.0]])
-        return volume, _middle(part), volume / 3.0 * turn @ np.diag(half**2) @ turn.T
+        return volume, middle_of(part), volume / 3.0 * turn @ np.diag(half**2) @ turn.T
     if part.kind == "ellipsoid":
         along, wide, axis = p[6], p[7], np.array(p[3:6])
         volume = math.pi * along * wide
         volume *= 1.0 if planar else 4.0 / 3.0 * wide
         both = np.outer(axis, axis)
-        second = along**2 * both + wide**2 * (across - both)
-        return volume, _middle(part), volume / (d + 2) * second
+        shares = along**2 * both + wide**2 * (across - both)
+        return volume, middle_of(part), volume / (d + 2) * shares
     span, radius = np.array(p[3:6]), p[6]  # a capsule: a rod, and two halves of a ball
     length = float(np.hypot.reduce(span))
     axis = span / length
@@ -108,16 +109,16 @@ def _integrals(part: Part, planar: bool) -> tuple[float, Floats, Floats]:
     else:
         rod, ends = math.pi * radius**2 * length, 4.0 / 3.0 * math.pi * radius**3
         centre, own, wide = 3.0 / 8.0 * radius, radius**2 / 5.0, radius**2 / 4.0
-    along = rod * half**2 / 3.0 + ends * (own + half**2 + 2.0 * half * centre)
-    second = along * both + (rod * wide + ends * own) * (across - both)
-    return rod + ends, _middle(part), second
+    lengthwise = rod * half**2 / 3.0 + ends * (own + half**2 + 2.0 * half * centre)
+    second = lengthwise * both + (rod * wide + ends * own) * (across - both)
+    return rod + ends, middle_of(part), second
 
 
 def _grid(parts: list[Part], planar: bool) -> tuple[Floats, float]:
     """Middles (n, 3) of small cubes around all parts, and the volume of one."""
     d = 2 if planar else 3
     reach = np.array([[_extent(part)] * 3 for part in parts])
-    middles = np.array([_middle(part) for part in parts])
+    middles = np.array([middle_of(part) for part in parts])
     low, high = (middles - reach).min(axis=0)[:d], (middles + reach).max(axis=0)[:d]
     step = float((high - low).max()) / GRID
     along = [np.arange(a + 0.5 * step, b, step) for a, b in zip(low, high, strict=True)]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import field_validator
 
-from mesokit.case.component import component, option, param, show
+from mesokit.case.component import component, name_of, option, param, show
 from mesokit.case.describe.hints import Either, Many
 from mesokit.case.registry import family
 from mesokit.geometry.region import Region
@@ -19,6 +19,7 @@ from mesokit.method.mpcd.body.inertia import Solid, solid_of
 
 Floats = NDArray[np.float64]
 Direction = Literal["x", "y", "z", "orientation"]
+RANDOM, LATTICE, GIVEN = "random", "lattice", "given"
 
 
 @component
@@ -99,7 +100,7 @@ class BodyStart:
     )
 
     def __post_init__(self) -> None:
-        if (self.positions is not None) != (self.rule == "given"):
+        if (self.positions is not None) != (self.rule == GIVEN):
             if self.positions is None:
                 raise ValueError("positions: missing; rule = 'given' needs them")
             raise ValueError("positions: only with rule = 'given'")
@@ -115,6 +116,7 @@ class Body(ABC):
 
     dimensions: ClassVar[tuple[int, ...]] = (2, 3)
     squirms: ClassVar[bool] = False  # whether its surface may have a `swim`
+    tumbles: ClassVar[bool] = False  # whether that may turn it at once, for which it must be round
 
     number: int = option(default=1, doc="bodies of this kind", kw_only=True, ge=1, le=2**24)
     name: str | None = option(
@@ -232,6 +234,7 @@ def named(bodies: tuple[Any, ...]) -> list[Named]:
     numbers: dict[str, int] = {}
     found = []
     for kind in bodies:
-        number = numbers[kind.shape] = numbers.get(kind.shape, 0) + 1
-        found.append(Named(kind.name or f"{kind.shape}-{number}", kind))
+        shape = name_of(kind)
+        number = numbers[shape] = numbers.get(shape, 0) + 1
+        found.append(Named(kind.name or f"{shape}-{number}", kind))
     return found

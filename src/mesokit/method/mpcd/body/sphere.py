@@ -13,6 +13,7 @@ class SphereBody(Body):
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
     squirms: ClassVar[bool] = True
+    tumbles: ClassVar[bool] = True
     shape: Literal["sphere"] = tag("sphere")
     radius: float = param(doc="its radius", unit="a", gt=0)
 

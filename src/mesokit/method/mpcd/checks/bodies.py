@@ -7,14 +7,15 @@ from typing import Any
 from mesokit.case.case import Case
 from mesokit.case.component import name_of, one_of, show, tag_of
 from mesokit.geometry.shape_protocol import Simple, closed_axes
+from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.body.protocol import Body, named
 from mesokit.method.mpcd.body.union import ENDLESS, UnionBody
 
 MOST_BODIES = 2**24
+MOST_FILLED = 0.9  # of the volume that walls leave
 LEAST_MASS = 10.0  # particles of the fluid
 ROOM = 4.0  # cells from a body to its own image
 SIZES = ("radius", "half_length", "length", "size", "parts")  # keys that say how large one is
-ROUND = ("sphere", "disk")
 
 
 def bodies(case: Case) -> Iterator[str]:
@@ -30,7 +31,7 @@ def bodies(case: Case) -> Iterator[str]:
         yield from (f"{key}.{problem}" for problem in _rows(case, kind))
         yield from (f"{key}.{problem}" for problem in _size(case, kind))
         yield from (f"{key}.{problem}" for problem in _counter_force(case, kind))
-        if kind.swim is not None and kind.swim.tumble_rate and name_of(kind) not in ROUND:
+        if kind.swim is not None and kind.swim.tumble_rate and not kind.tumbles:
             yield (
                 f"{key}.swim.tumble_rate = {show(kind.swim.tumble_rate)}: only of a sphere or a "
                 "disk; others have no room to turn at once"
@@ -42,6 +43,13 @@ def bodies(case: Case) -> Iterator[str]:
     total = sum(kind.number for kind in case.bodies)
     if total > MOST_BODIES:
         yield f"bodies: {total} in all; expected at most {MOST_BODIES}"
+    d, room = case.box.dimension, free_volume(case)
+    filled = sum(kind.number * kind.solid(d).volume for kind in case.bodies)
+    if filled > MOST_FILLED * room:
+        yield (
+            f"bodies: they fill {filled:.4g} of {room:.4g} cells; expected at most "
+            f"{MOST_FILLED:.0%}: fewer or smaller bodies"
+        )
 
 
 def _not_yet(case: Case) -> Iterator[str]:

@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
+from mesokit.method.mpcd.body.protocol import GIVEN, LATTICE, RANDOM
 from mesokit.method.mpcd.engine.bodies.allocate import masses_of
 from mesokit.method.mpcd.start.body_room import (
     Apart,
-    drawn,
-    in_wall,
+    free_places,
+    deepest_in_wall,
     overlap,
     periods,
     tree_of,
@@ -35,7 +36,7 @@ def first_places(case: Case) -> tuple[Floats, Floats]:
     places, turns, done, order = np.zeros((total, d)), np.zeros((total, 4)), 0, []
     for number, kind in enumerate(case.bodies, start=1):
         rows = slice(done, done + kind.number)
-        order.append((kind.start.rule != "given", -kind.solid(d).radius, number, rows, kind))
+        order.append((kind.start.rule != GIVEN, -kind.solid(d).radius, number, rows, kind))
         done += kind.number
     placed: list[Apart] = []
     # Given places first, then kinds of large bodies before those of small ones.
@@ -43,12 +44,12 @@ def first_places(case: Case) -> tuple[Floats, Floats]:
         ids = np.arange(rows.start, rows.stop)
         gap = GAP * kind.interaction.range if kind.interaction.depth else NONE
         reach = kind.solid(d).radius + 0.5 * gap
-        if kind.start.rule == "given":
+        if kind.start.rule == GIVEN:
             places[rows] = kind.start.positions
-        elif kind.start.rule == "lattice":
+        elif kind.start.rule == LATTICE:
             places[rows] = _lattice(kind.number, size)
         else:
-            places[rows], found = drawn(case, ids, reach, reach + 0.5 * gap, placed)
+            places[rows], found = free_places(case, ids, reach, reach + 0.5 * gap, placed)
             if found < kind.number:
                 raise CaseError(
                     f"bodies[#{number}].number = {kind.number}: no room was found for more than "
@@ -81,7 +82,7 @@ def _turns(case: Case, kind: Any, ids: NDArray[np.int64]) -> Floats:
             half = np.radians(0.5 * rows[:, 0])
             return np.stack([np.cos(half), 0 * half, 0 * half, np.sin(half)], axis=1)
         return rows / np.linalg.norm(rows, axis=1)[:, None]
-    if kind.start.rule != "random" or kind.hinge is not None or "orientation" in kind.fixed:
+    if kind.start.rule != RANDOM or kind.hinge is not None or "orientation" in kind.fixed:
         return turns
     random = Draws(case.run.seed, INITIAL_BODIES, ids, 2**20)
     if d == 2:
@@ -104,7 +105,7 @@ def _require_room(case: Case, places: Floats, turns: Floats) -> None:
         (first, i), (last, j) = map(key, met)
         of = "" if first == last else f" of {first}"
         raise CaseError(f"{last}.start: its body {j} overlaps body {i}{of}")
-    deep = in_wall(case, places, turns) if case.walls else None
+    deep = deepest_in_wall(case, places, turns) if case.walls else None
     if deep is not None:
         kind, i = key(deep[0])
         raise CaseError(f"{kind}.start: its body {i} is in a wall, {deep[1]:.3g} deep")

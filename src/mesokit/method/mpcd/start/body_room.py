@@ -16,7 +16,7 @@ from mesokit.geometry.primitive import WIDTH
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.kernels.later import kernel
-from mesokit.method.mpcd.body.inertia import Solid
+from mesokit.method.mpcd.body.inertia import Solid, middle_of
 from mesokit.method.mpcd.engine.bodies.state import FOUR, load, turned, turned_back
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.scalar.jit import scalar
@@ -80,7 +80,7 @@ def tree_of(places: Floats, period: Floats) -> cKDTree:
     return cKDTree(np.where(period > 0, inside, places), boxsize=period)
 
 
-def clearance(case: Case, reach: float) -> Callable[[Floats], Floats]:
+def walls_away(case: Case, reach: float) -> Callable[[Floats], Floats]:
     """The function of places (n, d) that gives their distance from walls, or `reach` if larger."""
     if not case.walls:
         return lambda places: np.full(len(places), reach)
@@ -88,7 +88,7 @@ def clearance(case: Case, reach: float) -> Callable[[Floats], Floats]:
     return lambda places: np.minimum(look(places)[1], reach)
 
 
-def drawn(
+def free_places(
     case: Case, ids: Ids, reach: float, wall: float, others: Sequence[Apart]
 ) -> tuple[Floats, int]:
     """Places (n, d) of bodies with these numbers, and how many found one.
@@ -97,7 +97,7 @@ def drawn(
     that have none draw one at a time; of two that are too near the later draws again.
     """
     d, size, period = case.box.dimension, np.array(case.box.size, float), periods(case)
-    clear = clearance(case, wall)
+    clear = walls_away(case, wall)
     random, left, draws = Draws(case.run.seed, INITIAL_BODIES, ids), np.arange(len(ids)), 0
     places, mine = np.zeros((len(ids), d)), list(others)
     for _ in range(TRIES):
@@ -141,7 +141,7 @@ def overlap(case: Case, places: Floats, turns: Floats) -> tuple[int, int] | None
         else:
             away = places[j] - places[i]
             away -= period * np.rint(away / np.where(period > 0, period, 1.0))
-            bad = _meet(solids[a], solids[b], away, turns[i], turns[j], period)
+            bad = _overlapping(solids[a], solids[b], away, turns[i], turns[j], period)
         if bad.any():
             first = np.lexsort((j[bad], i[bad]))[0]
             return int(i[bad][first]), int(j[bad][first])
@@ -154,7 +154,7 @@ def _rows(case: Case) -> list[slice]:
     return [slice(end - kind.number, end) for kind, end in zip(case.bodies, ends, strict=True)]
 
 
-def _meet(
+def _overlapping(
     one: Solid, other: Solid, away: Floats, turns: Floats, others: Floats, period: Floats
 ) -> NDArray[np.bool_]:
     """Which pairs of bodies overlap, all images of the second among them."""
@@ -163,18 +163,18 @@ def _meet(
         by = away + step
         near = np.flatnonzero(~found & ((by**2).sum(axis=1) < (one.radius + other.radius) ** 2))
         if len(near):
-            gaps = np.zeros(len(near))
-            find_gaps(
-                shape_of(one), shape_of(other), (0.0,) * len(period),
-                by[near], turns[near], others[near], gaps,
-            )  # fmt: skip
+            gaps, zero = np.zeros(len(near)), (0.0,) * len(period)
+            pairs = by[near], turns[near], others[near]
+            find_gaps(shape_of(one), shape_of(other), zero, pairs, gaps)
             found[near] = gaps < TOUCH
     return found
 
 
 @kernel
-def find_gaps(one, other, zero, away, turns, others, gaps):
-    """The distance of two bodies, 0 where they overlap, with the second at `away`."""
+def find_gaps(one, other, zero, pairs, gaps):
+    """The distance of two bodies, 0 where they overlap: places of the second as seen from the
+    first, and orientations of both."""
+    away, turns, others = pairs
     for n in range(len(away)):
         y, q, p = row(away, n, zero), load(turns, n, 0, FOUR), load(others, n, 0, FOUR)
         least = math.inf
@@ -206,12 +206,12 @@ def into_part(shape, part, x, q, r):
 # --- walls ----------------------------------------------------------------------------------------
 
 
-def in_wall(case: Case, places: Floats, turns: Floats) -> tuple[int, float] | None:
+def deepest_in_wall(case: Case, places: Floats, turns: Floats) -> tuple[int, float] | None:
     """The body, by number, that is deepest in a wall, and how deep; None where none is."""
     d, found = case.box.dimension, (-1, TOUCH)
     for kind, rows in zip(case.bodies, _rows(case), strict=True):
         solid = kind.solid(d)
-        look = clearance(case, solid.radius)
+        look = walls_away(case, solid.radius)
         far = look(places[rows])
         points = np.zeros((1, 3)) if is_ball(solid) else _within(solid, d)
         for i in np.flatnonzero(far < solid.radius).tolist():
@@ -228,9 +228,7 @@ def _within(solid: Solid, d: int) -> Floats:
     """Places (n, 3) on the surface of a body and on smaller ones within, in its own frame."""
     shape, nothing, found = shape_of(solid), np.zeros(1), []
     for part, numbers in zip(solid.parts, shape.table, strict=True):
-        middle = np.array(part.numbers[:3])
-        if part.kind == "capsule":
-            middle += 0.5 * np.array(part.numbers[3:6])
+        middle = middle_of(part)
         p, samples = address(numbers), address(nothing)
         # The nearest places to those on a ball about it: on what is convex they are no farther
         # from one another than there.
