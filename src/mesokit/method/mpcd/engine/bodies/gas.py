@@ -16,7 +16,9 @@ from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.collision.protocol import collide, contribute
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.hits import (
-    add_hit,
+    add_moments,
+    moments_of,
+    no_moments,
     floats,
     normal_at,
     physics_scales,
@@ -162,6 +164,7 @@ def fill_cell(worker, now, physics, bodies, i, x, speed, middle):
     key = np.int64(i) * np.int64(bodies.cells + 1) + cell
     m, mean = bodies.gas_mass, bodies.density * of_kind(bodies, i, FILLED)
     width = math.sqrt(physics.kT / m)
+    found = no_moments(middle)
     for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
         a, b, c, _ = words(counter, BODY_GAS_PLACE, key, j)
         within = first((unit_open(a), unit_open(b), unit_open(c)), middle)
@@ -178,9 +181,13 @@ def fill_cell(worker, now, physics, bodies, i, x, speed, middle):
             store(gas, n, GAS_ARM, s)
             gas[n, GAS_SPEED] = speed
             bodies.gas_number[thread, n] = FIRST_BODY_GAS + key * MOST_OF_CELL + j
+            bodies.gas_cell[thread, n] = cell
             bodies.gas_body[thread, n] = i
             here[GAS_COUNT] = n + 1
-            add_hit(bodies, bodies.sums[thread, i], i, m, s, s, thermal, physics)
+            arm, p = scaled(1.0 / bodies.lever, s), scaled(m, thermal)
+            found = added(found, moments_of(m, arm) + p + outer(arm, p))
+    # The terms of a cell are added before they are rounded, in the order in which they were drawn.
+    add_moments(bodies.sums[thread, i], found, middle, physics_scales(bodies, physics))
 
 
 @scalar
@@ -221,11 +228,10 @@ def move_gas(thread, now, physics, fluid, bodies, n):
     r, v, _ = fold(now.box, r, v, now.grid.shift)
     m, number = bodies.gas_mass, bodies.gas_number[thread, n]
     kept, own = contribute(physics.rule, now.counter, (number, 0), m, v, in_cell(r, now.grid))
-    cell = np.int64(cell_index(r, now.grid))
+    cell = bodies.gas_cell[thread, n]
     store(gas, n, GAS_PLACE, r)
     store(gas, n, GAS_VELOCITY, v)
     store(gas, n, GAS_KEPT, kept)
-    bodies.gas_cell[thread, n] = cell
     sums = fluid.cells.sums[thread]
     place = np.uint64(cell) * np.uint64(sums_length(len(physics.terms)))
     sums[place] += optional(tally(physics.energy, m, v), 1)

@@ -238,34 +238,51 @@ def add_hit(bodies, sums, i, m, s, normal, g, physics):
                 sums[first] += quanta(m * c[a] * c[b], by_mass)
                 first += 1
         p = scaled(m * dot(normal, g), normal)
+        both = p + outer(arm, p)
+        add_integers(sums[first:], added_quanta(both, by_momentum, integers(both)))
     else:
-        first = add_moments(sums, m, arm, by_mass)
         p = scaled(m, g)
-    both = p + outer(arm, p)
-    add_integers(sums[first : first + len(both)], added_quanta(both, by_momentum, integers(both)))
+        found = moments_of(m, arm) + p + outer(arm, p)
+        add_moments(sums, found, s, (by_mass, by_momentum))
 
 
 @by_type
-def add_moments(sums, m, arm, scale):
-    """Add m, m s and m s s^T (in 2D m s^2); the number of these."""
+def moments_of(m, arm):
+    """m, m s and m s s^T (in 2D m s^2)."""
     if len(arm) == 2:
+        return lambda m, arm: (
+            m,
+            m * arm[0],
+            m * arm[1],
+            m * (arm[0] * arm[0] + arm[1] * arm[1]),
+        )
 
-        def planar(sums, m, arm, scale):
-            square = arm[0] * arm[0] + arm[1] * arm[1]
-            terms = (m, m * arm[0], m * arm[1], m * square)
-            add_integers(sums, added_quanta(terms, scale, integers(terms)))
-            return 4
-
-        return planar
-
-    def spatial(sums, m, arm, scale):
+    def spatial(m, arm):
         x, y, z = arm
         squares = (m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z)
-        terms = (m, m * x, m * y, m * z) + squares
-        add_integers(sums, added_quanta(terms, scale, integers(terms)))
-        return 10
+        return (m, m * x, m * y, m * z) + squares
 
     return spatial
+
+
+@by_type
+def no_moments(pattern):
+    """The moments and momenta of nothing."""
+    nothing = (0.0,) * (7 if len(pattern) == 2 else 16)
+    return lambda pattern: nothing
+
+
+@by_type
+def add_moments(sums, found, pattern, scales):
+    """Add moments and momenta to the sums of a body, in whole numbers."""
+    moments = 4 if len(pattern) == 2 else 10
+
+    def add(sums, found, pattern, scales):
+        some, rest = found[:moments], found[moments:]
+        add_integers(sums, added_quanta(some, scales[0], integers(some)))
+        add_integers(sums[moments:], added_quanta(rest, scales[1], integers(rest)))
+
+    return add
 
 
 @scalar

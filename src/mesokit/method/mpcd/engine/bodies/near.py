@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from mesokit.case.box import at_time, fold
-from mesokit.loops.layout import share
+from mesokit.loops.layout import LANES, share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.state import (
@@ -60,7 +60,8 @@ LISTS_HOLD = 0.15  # cells: lists are made anew when a surface has gone so far
 PARTNERS_HOLD = 0.5  # cells: the farthest that surfaces may go with one list of partners
 PARTS = 64.0  # of a cell: what is clear is kept in whole numbers of these
 FAR = np.uint8(LIST_REACH * PARTS)
-ALLOWANCE = 1  # where scratch memory has the farthest that surfaces go with one list
+FARTHEST, ALLOWANCE = 250, 251  # where scratch memory has how far
+# surfaces go with one list
 
 
 @scalar
@@ -78,9 +79,10 @@ def box_at_start(now, physics):
 
 @scalar
 def path_of_surface(bodies, i, time):
-    """The longest path of any place on a body in a timestep."""
+    """The longest way that the surface of a body goes in a timestep; a ball that turns stays."""
     u, w = load(bodies.rows, i, MEAN_VELOCITY, THREE), load(bodies.rows, i, MEAN_SPIN, THREE)
-    return time * (math.sqrt(dot(u, u)) + of_kind(bodies, i, RADIUS) * math.sqrt(dot(w, w)))
+    turning = 0.0 if of_kind(bodies, i, IS_BALL) > 0.5 else of_kind(bodies, i, RADIUS)
+    return time * (math.sqrt(dot(u, u)) + turning * math.sqrt(dot(w, w)))
 
 
 @scalar
@@ -103,10 +105,10 @@ def keep_lists(worker, now, physics, bodies):
 @scalar
 def farthest_of_all(worker, bodies, farthest):
     """The largest of a number of each thread."""
-    bodies.work[worker.thread, 0] = farthest
+    bodies.work[worker.thread, FARTHEST] = farthest
     barrier(worker)
     for t in range(worker.threads):
-        farthest = max(farthest, bodies.work[t, 0])
+        farthest = max(farthest, bodies.work[t, FARTHEST])
     barrier(worker)
     return farthest
 
@@ -149,7 +151,7 @@ def list_by_cells(worker, box, bodies, zero):
     for cell in range(first, last):
         bodies.near_count[cell] = 0
         for cube in range(1 << d):
-            bodies.clear[(cell << d) + cube] = FAR
+            bodies.clear[half_of(bodies, cell, cube, d)] = FAR
     # Body by body, the cells of a cube about it. A thread writes the lists of its own cells only,
     # and bodies come in the order of their numbers.
     for i in range(len(bodies.rows)):
@@ -205,8 +207,20 @@ def clear_cubes(bodies, box, kind, q, cell, s):
             at = with_item(at, k, s[k] + (0.25 if (cube >> k) & 1 else -0.25))
         c = distance_of(bodies, kind, q, at) - 0.5 * HALF_DIAGONAL - (0.5 if slides(box) else 0.0)
         clear = np.uint8(int(min(max(c, 0.0), LIST_REACH) * PARTS))
-        place = (cell << d) + cube
+        place = half_of(bodies, cell, cube, d)
         bodies.clear[place] = min(bodies.clear[place], clear)
+
+
+@scalar
+def half_of(bodies, cell, cube, d):
+    """Number, among the cubes of half a cell, of one of those of a cell."""
+    place, stride, rest = 0, 1, cell
+    for k in range(d):
+        cells = int(bodies.grid.cells[k])
+        place += (2 * (rest % cells) + ((cube >> k) & 1)) * stride
+        rest //= cells
+        stride *= 2 * cells
+    return place
 
 
 @scalar
@@ -258,13 +272,22 @@ def choose_near(worker, now, physics, bodies, strip, s, count, marks):
     """
     zero, thread, candidates, chosen = physics.zero, worker.thread, 0, 0
     d, box, allowance = len(zero), box_at_start(now, physics), bodies.work[thread, ALLOWANCE]
-    # Coarse test of all lanes at t, before the flight, by what is clear around cubes. No branches.
-    for i in range(count):
+    cubes, any_near = bodies.cubes[thread], np.int32(0)
+    # Coarse test of all lanes at t, before the flight, by what is clear around cubes. Three loops,
+    # of which the first and the last become vectors: between them is the gather from the table.
+    for i in range(LANES):
+        cubes[i] = cube_of(bodies, box, load_particle(strip, i, 0, zero))
+    for i in range(LANES):
+        cubes[i] = np.int32(bodies.clear[np.uint32(cubes[i])])
+    for i in range(LANES):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        clear = float(bodies.clear[cube_of(bodies, box, r)]) * (1.0 / PARTS) - allowance
-        marks[i] = np.int64(not path_of(bodies, physics, r, v) < clear)
+        clear = float(cubes[i]) * (1.0 / PARTS) - allowance
+        cubes[i] = np.int32(not path_of(bodies, physics, r, v) < clear)
+        any_near |= cubes[i]
     # Compact the lanes of candidates to the front, again without branches.
-    for i in range(count):
+    for i in range(count if any_near != 0 else 0):
+        marks[i] = np.int64(cubes[i])
+    for i in range(count if any_near != 0 else 0):
         mark = marks[i]
         marks[candidates] = i
         candidates += mark
@@ -316,13 +339,9 @@ def cell_of(bodies, box, r):
 
 @scalar
 def cube_of(bodies, box, r):
-    """The half of a cell in each direction, of which it is known what is clear."""
-    here = in_lists(box, r)
-    cell, cube = np.int64(cell_index(here, bodies.grid)), np.int64(0)
-    for k in range(len(here)):
-        upper = here[k] - floor(here[k]) >= 0.5
-        cube |= np.int64(upper) << k
-    return (cell << len(here)) + cube
+    """The half of a cell in each direction, of which it is known what is clear: cells of half the
+    size, numbered as those of the lists are."""
+    return cell_index(scaled(2.0, in_lists(box, r)), bodies.halves)
 
 
 @scalar
@@ -345,22 +364,23 @@ def may_meet(bodies, physics, box, cell, r, v, path):
     change must lie on the straight flight of a particle that no force and no wall bends.
     """
     time = physics.timestep
-    straight = path <= time * math.sqrt(dot(v, v))
+    square = dot(v, v)
+    straight = path * path <= time * time * square * (1.0 + 1e-12)
     for n in range(bodies_near(bodies, cell)):
         i = body_near(bodies, cell, n)
         x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
-        away, stride = added_scaled(r, -1.0, x), bodies.rows[i, STRIDE]
-        bound, square = of_kind(bodies, i, RADIUS) + path + stride, dot(away, away)
-        if square > bound * bound:
-            continue
-        if of_kind(bodies, i, IS_BALL) > 0.5:
-            u = state.with_shear(load(bodies.rows, i, MEAN_VELOCITY, r), speed)
-            w = added_scaled(v, -1.0, u)
-            if not straight or meets_ball(of_kind(bodies, i, RADIUS) + stride, away, w, time):
+        away, stride, kind = added_scaled(r, -1.0, x), bodies.rows[i, STRIDE], bodies.kind[i]
+        if bodies.kinds[kind, IS_BALL] > 0.5:
+            radius = bodies.kinds[kind, RADIUS] + stride
+            if straight:
+                u = state.with_shear(load(bodies.rows, i, MEAN_VELOCITY, r), speed)
+                if meets_ball(radius, away, added_scaled(v, -1.0, u), time):
+                    return True
+            elif dot(away, away) <= (radius + path) * (radius + path):
                 return True
         else:
             q = load(bodies.rows, i, TURN, state.FOUR)
-            c, _ = state.clearance(bodies, bodies.kind[i], state.turned_back(q, away))
+            c, _ = state.clearance(bodies, kind, state.turned_back(q, away))
             if not c > path + stride:
                 return True
     return False

@@ -69,9 +69,10 @@ class MovingBodies(NamedTuple):
     substeps: of the motion of bodies.
     lever: a power of two not below the largest radius: arms are counted in it. further: what walls
     may add to the path of a particle in a timestep. twice: 1 where hits are found once more with the mean motion, else 0.
-    grid: cells of the box, without shift; near_count (cells + 1,), near (cells + 1,
-    MOST_NEAR_CELL): the bodies near each; clear (cells + 1, 2^d): the distance that is clear around
-    each half of it in each direction. partner_count (bodies,), partners (bodies,
+    grid: cells of the box, without shift; halves: cubes of half the size; cubes (threads, LANES):
+    scratch memory; near_count (cells + 1,), near (cells + 1,
+    MOST_NEAR_CELL): the bodies near each; clear (cubes + 1,): the distance that is clear around each
+    cube. partner_count (bodies,), partners (bodies,
     MOST_PARTNERS): other bodies that may come near.
     values (threads, most, NEAR_COLUMNS), numbers (threads, most, NEAR_NUMBERS): particles near.
     sums (threads, bodies, SUMS): of the hits in hand; taken (threads, bodies, 6): impulses, in
@@ -97,6 +98,8 @@ class MovingBodies(NamedTuple):
     further: float
     twice: int
     grid: tuple
+    halves: tuple
+    cubes: Any
     near_count: Any
     near: Any
     clear: Any
