@@ -33,14 +33,10 @@ from mesokit.method.mpcd.engine.bodies.state import (
     START,
     START_V,
     SPARE,
-    STEP,
     STRIDE,
     THREE,
     TIME,
-    TOO_MANY,
     TURN,
-    WHAT,
-    WHICH,
     image_near,
     load,
     of_kind,
@@ -48,6 +44,8 @@ from mesokit.method.mpcd.engine.bodies.state import (
 )
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
+from mesokit.method.mpcd.engine.embedded.near import note
+from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
 from mesokit.method.mpcd.streaming import halfway, vector
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
@@ -62,13 +60,6 @@ PARTS = 64.0  # of a cell: what is clear is kept in whole numbers of these
 FAR = np.uint8(LIST_REACH * PARTS)
 FARTHEST, ALLOWANCE = 250, 251  # where scratch memory has how far
 # surfaces go with one list
-
-
-@scalar
-def note(counters, step, what, which):
-    """Note the first thing that goes wrong."""
-    if counters[STEP] == 0:
-        counters[STEP], counters[WHAT], counters[WHICH] = np.int64(step), what, np.int64(which)
 
 
 @scalar
@@ -96,7 +87,7 @@ def keep_lists(worker, now, physics, bodies):
         box = box_at_start(now, physics)
         list_by_cells(worker, box, bodies, physics.zero)
         for i in range(first, last):
-            list_partners(bodies, box, i, physics.zero)
+            list_other_bodies(bodies, box, i, physics.zero)
         barrier(worker)
         for i in range(first, last):
             bodies.rows[i, PATH] = 0.0
@@ -155,11 +146,11 @@ def list_by_cells(worker, box, bodies, zero):
     # Body by body, the cells of a cube about it. A thread writes the lists of its own cells only,
     # and bodies come in the order of their numbers.
     for i in range(len(bodies.rows)):
-        mark_around(bodies, box, i, (first, last), zero)
+        list_around(bodies, box, i, (first, last), zero)
 
 
 @scalar
-def mark_around(bodies, box, i, mine, zero):
+def list_around(bodies, box, i, mine, zero):
     """Put body i on the lists of those of my cells that its surface comes near."""
     d, x, radius = len(zero), load(bodies.rows, i, PLACE, zero), of_kind(bodies, i, RADIUS)
     reach = LIST_REACH + HALF_DIAGONAL + (0.5 if slides(box) else 0.0)
@@ -193,7 +184,7 @@ def distance_of(bodies, kind, q, s):
     """Distance of a place at an arm from the surface of a body of a kind, negative inside."""
     if bodies.kinds[kind, IS_BALL] > 0.5:
         return math.sqrt(dot(s, s)) - bodies.kinds[kind, RADIUS]
-    c, _ = state.clearance(bodies, kind, state.turned_back(q, s))
+    c, _ = state.clearance(bodies, kind, state.rotated_back(q, s))
     return c
 
 
@@ -237,7 +228,7 @@ def put_on_list(bodies, cell, i):
 
 
 @seldom
-def list_partners(bodies, box, i, zero):
+def list_other_bodies(bodies, box, i, zero):
     """The other bodies that may come within the range of the potential of gaps."""
     x, found = load(bodies.rows, i, PLACE, zero), 0
     for j in range(len(bodies.rows)):
@@ -257,7 +248,7 @@ def list_partners(bodies, box, i, zero):
 
 
 @scalar
-def path_of(bodies, physics, r, v):
+def longest_flight(bodies, physics, r, v):
     """The longest path that a particle can fly in a timestep."""
     a, time = vector(halfway(physics.field, r, v, physics.timestep), r), physics.timestep
     path = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
@@ -265,7 +256,7 @@ def path_of(bodies, physics, r, v):
 
 
 @scalar
-def choose_near(worker, now, physics, bodies, strip, s, count, marks):
+def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
     """Put the particles of strip s that may meet a body on the list of this thread.
 
     Their lanes become the first entries of `marks`; returns their number.
@@ -282,7 +273,7 @@ def choose_near(worker, now, physics, bodies, strip, s, count, marks):
     for i in range(LANES):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         clear = float(cubes[i]) * (1.0 / PARTS) - allowance
-        cubes[i] = np.int32(not path_of(bodies, physics, r, v) < clear)
+        cubes[i] = np.int32(not longest_flight(bodies, physics, r, v) < clear)
         any_near |= cubes[i]
     # Compact the lanes of candidates to the front, again without branches.
     for i in range(count if any_near != 0 else 0):
@@ -295,14 +286,14 @@ def choose_near(worker, now, physics, bodies, strip, s, count, marks):
     for j in range(candidates):
         i = marks[j]
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        path = path_of(bodies, physics, r, v)
+        path = longest_flight(bodies, physics, r, v)
         cell = np.int64(cell_of(bodies, box, r))
         if not path + allowance < LIST_REACH or bodies.near_count[cell] == EVERY_BODY:
             cell = np.int64(EVERY_BODY)
-        if may_meet(bodies, physics, box, cell, r, v, path):
+        if may_hit(bodies, physics, box, cell, r, v, path):
             n = bodies.counters[thread, COUNT]
             if n == bodies.values.shape[1]:
-                note(bodies.counters[thread], now.counter.step, TOO_MANY, 0)
+                note(bodies.faults[thread], now.counter.step, TOO_MANY, 0)
                 break
             store(bodies.values[thread], n, START, r)
             store(bodies.values[thread], n, START_V, v)
@@ -357,7 +348,7 @@ def body_near(bodies, cell, n):
 
 
 @seldom
-def may_meet(bodies, physics, box, cell, r, v, path):
+def may_hit(bodies, physics, box, cell, r, v, path):
     """Whether a particle at r, which flies so far, may meet a body on the list of its cell.
 
     It follows from places and velocities alone. A ball that is larger by what its motion may still
@@ -380,7 +371,7 @@ def may_meet(bodies, physics, box, cell, r, v, path):
                 return True
         else:
             q = load(bodies.rows, i, TURN, state.FOUR)
-            c, _ = state.clearance(bodies, kind, state.turned_back(q, away))
+            c, _ = state.clearance(bodies, kind, state.rotated_back(q, away))
             if not c > path + stride:
                 return True
     return False
