@@ -78,6 +78,18 @@ def integers(values):
     return "np.int64(0)"
 
 
+@elementwise
+def opposite(a):
+    """The opposite of a vector of whole numbers."""
+    return "-a[{k}]"
+
+
+@elementwise
+def floats(a):
+    """A vector of whole numbers as floats."""
+    return "float(a[{k}])"
+
+
 @for_each
 def add_fixed(array, terms, sums):
     """Add sums of so many fixed-point numbers to an array, as whole numbers."""

@@ -28,11 +28,11 @@ Floats = NDArray[np.float64]
 
 def masses_of(case: Case) -> Floats:
     """Mass of a body of each kind."""
-    d, density = case.box.dimension, mass_density(case)
+    d, density = case.box.dimension, fluid_mass_density(case)
     return np.array([kind.mass_in(d, density) for kind in case.bodies])
 
 
-def mass_density(case: Case) -> float:
+def fluid_mass_density(case: Case) -> float:
     """Mass of the fluid per volume."""
     return float(sum(kind.density * kind.mass for kind in case.fluid.kinds))
 
@@ -44,11 +44,11 @@ def balancing_pull(case: Case) -> tuple[float, ...]:
     fluid = sum(kind.mass * kind.number for kind in case.groups[0].kinds)
     masses = masses_of(case)
     numbers = np.array([kind.number for kind in case.bodies])
-    push = np.zeros(case.box.dimension)
+    total = np.zeros(case.box.dimension)
     for kind in case.bodies:
         if kind.counter_force and kind.force is not None:
-            push += kind.number * np.array(kind.force)
-    return tuple((-push / (fluid + float(masses @ numbers))).tolist())
+            total += kind.number * np.array(kind.force)
+    return tuple((-total / (fluid + float(masses @ numbers))).tolist())
 
 
 def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
@@ -76,15 +76,15 @@ def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
     row[state.RADIUS] = solid.radius
     row[state.IS_BALL] = len(solid.parts) == 1 and solid.parts[0].kind == "ball"
     row[state.IS_SLIP] = kind.surface == "slip"
-    fluid = mass_density(case) * solid.volume
+    fluid = fluid_mass_density(case) * solid.volume
     if kind.virtual == "fill" and kind.surface != "slip":
         row[state.FILLED] = min(1.0, mass / fluid)
     if kind.hinge is not None and d == 3:
         row[state.HINGED] = 1.0
         row[state.HINGE : state.HINGE + 3] = np.array(kind.hinge) / math.hypot(*kind.hinge)
-    row[state.PUSH : state.PUSH + d] = kind.force or (0.0,) * d
+    row[state.FORCE_GIVEN : state.FORCE_GIVEN + d] = kind.force or (0.0,) * d
     twist = kind.torque if isinstance(kind.torque, tuple) else (0.0, 0.0, kind.torque or 0.0)
-    row[state.TWIST : state.TWIST + 3] = twist
+    row[state.TORQUE_GIVEN : state.TORQUE_GIVEN + 3] = twist
     row[state.IN_BODY_FRAME] = kind.frame == "body"
     kT = case.fluid.kT
     if kind.trap is not None:
@@ -169,9 +169,11 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int) -> MovingBodies:
         further=further,
         twice=1,
         grid=Grid(zero, zero, cells, tuple(1.0 / c for c in cells)),
+        halves=Grid(zero, zero, tuple(2.0 * c for c in cells), tuple(0.5 / c for c in cells)),
+        cubes=zeros((threads, LANES), np.int32),
         near_count=np.zeros(near, np.int32),
         near=np.zeros((near, state.MOST_NEAR_CELL), np.int32),
-        clear=np.zeros(near << d, np.uint8),
+        clear=np.zeros((numbers.number_of_cells << d) + 1, np.uint8),
         partner_count=np.zeros(n, np.int32),
         partners=np.zeros((n, state.MOST_PARTNERS), np.int32),
         values=zeros((threads, most, state.NEAR_COLUMNS)),
@@ -184,6 +186,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int) -> MovingBodies:
         gas_cell=zeros((threads, most_gas), np.int64),
         gas_body=zeros((threads, most_gas), np.int64),
         counters=zeros((threads, state.COUNTERS), np.int64),
+        faults=zeros((threads, 8), np.int64),
         work=zeros((threads, state.WORK)),
         chosen=zeros((threads, LANES), np.int64),
         waste=zeros((threads, waste), np.int64),

@@ -1,4 +1,4 @@
-"""Forces and torques on bodies that are not of the fluid: pushes, traps, and gaps."""
+"""Forces and torques on bodies that are not of the fluid: given ones, traps, and gaps."""
 
 import math
 
@@ -20,19 +20,19 @@ from mesokit.method.mpcd.engine.bodies.state import (
     MASS,
     PARTS_END,
     PLACE,
-    PUSH,
+    FORCE_GIVEN,
     RADIUS,
     RANGE,
     SPRING,
     THREE,
     TOWARDS,
     TURN,
-    TWIST,
+    TORQUE_GIVEN,
     image_near,
     load,
     of_kind,
-    turned,
-    turned_back,
+    rotated,
+    rotated_back,
     whole_spin,
 )
 from mesokit.method.mpcd.engine.where import where
@@ -50,19 +50,19 @@ CLOSE = 1e-9  # cells: two steps of a search that differ by less have arrived
 def forces_on(bodies, physics, box, i, zero):
     """Force and torque on body i where it is."""
     kind, q, x = bodies.kind[i], load(bodies.rows, i, TURN, FOUR), load(bodies.rows, i, PLACE, zero)
-    force, torque = load(bodies.kinds, kind, PUSH, zero), load(bodies.kinds, kind, TWIST, THREE)
+    force, torque = load(bodies.kinds, kind, FORCE_GIVEN, zero), load(bodies.kinds, kind, TORQUE_GIVEN, THREE)
     if bodies.kinds[kind, IN_BODY_FRAME] > 0.5:
-        force, torque = turned(q, force), turned(q, torque)
+        force, torque = rotated(q, force), rotated(q, torque)
     # The fluid's force acts on it as on the fluid in its place; all that balances other forces is
     # an acceleration of everything.
     displaced = bodies.kinds[kind, DISPLACED]
     force = added_scaled(force, displaced, vector(acceleration(physics.field, x), x))
-    force = added_scaled(force, bodies.kinds[kind, MASS] - displaced, pull_of(bodies, zero))
+    force = added_scaled(force, bodies.kinds[kind, MASS] - displaced, balance_at(bodies, zero))
     if bodies.kinds[kind, SPRING] > 0.0:
         home, _ = image_near(box, load(bodies.rows, i, HOME, zero), x)
         force = added_scaled(force, bodies.kinds[kind, SPRING], added_scaled(home, -1.0, x))
     if bodies.kinds[kind, ANGULAR_SPRING] > 0.0:
-        axis = turned(q, first((1.0, 0.0, 0.0), zero))
+        axis = rotated(q, first((1.0, 0.0, 0.0), zero))
         twist = outer(axis, load(bodies.kinds, kind, TOWARDS, zero))
         torque = added_scaled(torque, bodies.kinds[kind, ANGULAR_SPRING], whole_spin(twist))
     if bodies.kinds[kind, DEPTH] > 0.0:
@@ -70,15 +70,15 @@ def forces_on(bodies, physics, box, i, zero):
         for n in range(len(bodies.rows) if number == EVERY_BODY else number):
             j = n if number == EVERY_BODY else np.int64(bodies.partners[i, n])
             if j != i:
-                push, twist = force_between(bodies, box, i, j, x, q)
-                force, torque = added(force, push), added(torque, twist)
-        push, twist = force_of_walls(bodies, physics, i, x, q)
-        force, torque = added(force, push), added(torque, twist)
+                given, twist = force_between(bodies, box, i, j, x, q)
+                force, torque = added(force, given), added(torque, twist)
+        given, twist = force_of_walls(bodies, physics, i, x, q)
+        force, torque = added(force, given), added(torque, twist)
     return force, torque
 
 
 @by_type
-def pull_of(bodies, zero):
+def balance_at(bodies, zero):
     """The uniform acceleration of everything, 0 where there is none."""
     from mesokit.method.mpcd.engine.cpu.physics import field_of
 
@@ -88,7 +88,7 @@ def pull_of(bodies, zero):
 
 
 @scalar
-def push_of_gap(depth, reach, gap):
+def force_of_gap(depth, reach, gap):
     """Force of a gap: of depth 4 e [(s/g)^12 - (s/g)^6 + 1/4] up to reach = 2^(1/6) s."""
     if gap >= reach:
         return 0.0
@@ -114,22 +114,22 @@ def force_between(bodies, box, i, j, x, q):
     if gap >= reach:
         return force, torque
     if of_kind(bodies, i, IS_BALL) > 0.5 and of_kind(bodies, j, IS_BALL) > 0.5:
-        return scaled(push_of_gap(depth, reach, gap) / distance, away), torque
+        return scaled(force_of_gap(depth, reach, gap) / distance, away), torque
     p = load(bodies.rows, j, TURN, FOUR)
     for a in range(int(of_kind(bodies, i, FIRST_PART)), int(of_kind(bodies, i, PARTS_END))):
         for b in range(int(of_kind(bodies, j, FIRST_PART)), int(of_kind(bodies, j, PARTS_END))):
             mine, theirs = nearest_places(bodies, a, x, q, b, other, p)
-            push, arm = push_along(mine, theirs, depth, reach), added_scaled(mine, -1.0, x)
-            force, torque = added(force, push), added(torque, whole_spin(outer(arm, push)))
+            given, arm = force_along(mine, theirs, depth, reach), added_scaled(mine, -1.0, x)
+            force, torque = added(force, given), added(torque, whole_spin(outer(arm, given)))
     return force, torque
 
 
 @scalar
-def push_along(mine, theirs, depth, reach):
+def force_along(mine, theirs, depth, reach):
     """The force by the gap between two places, on the body of the first."""
     between = added_scaled(mine, -1.0, theirs)
     gap = math.sqrt(dot(between, between))
-    return scaled(push_of_gap(depth, reach, gap) / max(gap, 1e-300), between)
+    return scaled(force_of_gap(depth, reach, gap) / max(gap, 1e-300), between)
 
 
 @seldom
@@ -149,11 +149,11 @@ def nearest_places(bodies, a, x, q, b, other, p):
 @scalar
 def on_part(bodies, part, x, q, r):
     """The place of a part, of a body at x, that is nearest to r."""
-    y = turned_back(q, added_scaled(r, -1.0, x))
+    y = rotated_back(q, added_scaled(r, -1.0, x))
     p, code = bodies.parts + 8 * WIDTH * part, bodies.part_code[part]
     c = primitive.distance(code, p, bodies.parts, y)
     n = primitive.normal(code, p, bodies.parts, y)
-    return added(x, turned(q, added_scaled(y, -c, n)))
+    return added(x, rotated(q, added_scaled(y, -c, n)))
 
 
 @where("(scaled(0.0, x), THREE)", bodies=lambda bodies: has_walls(bodies))
@@ -168,7 +168,7 @@ def force_of_walls(bodies, physics, i, x, q):
     if distance >= radius + reach:
         return force, torque
     if of_kind(bodies, i, IS_BALL) > 0.5:
-        return scaled(push_of_gap(depth, reach, distance - radius), normal), torque
+        return scaled(force_of_gap(depth, reach, distance - radius), normal), torque
     for a in range(int(of_kind(bodies, i, FIRST_PART)), int(of_kind(bodies, i, PARTS_END))):
         wall = added_scaled(here, -distance, normal)
         mine = wall
@@ -182,8 +182,8 @@ def force_of_walls(bodies, physics, i, x, q):
             step = added_scaled(mine, -1.0, before)
             if dot(step, step) < CLOSE * CLOSE:
                 break
-        push, arm = push_along(mine, wall, depth, reach), added_scaled(mine, -1.0, here)
-        force, torque = added(force, push), added(torque, whole_spin(outer(arm, push)))
+        given, arm = force_along(mine, wall, depth, reach), added_scaled(mine, -1.0, here)
+        force, torque = added(force, given), added(torque, whole_spin(outer(arm, given)))
     return force, torque
 
 

@@ -16,15 +16,16 @@ from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.collision.protocol import collide, contribute
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.hits import (
-    add_hit,
-    floats,
+    add_moments,
+    moments_at,
+    no_moments,
     normal_at,
     physics_scales,
     take_impulses,
     wall_velocity,
 )
 from mesokit.method.mpcd.engine.bodies.linear import solve_noise, unlevered
-from mesokit.method.mpcd.engine.bodies.near import note, slides
+from mesokit.method.mpcd.engine.bodies.near import slides
 from mesokit.method.mpcd.engine.bodies.state import (
     B1,
     B2,
@@ -42,13 +43,12 @@ from mesokit.method.mpcd.engine.bodies.state import (
     RADIUS,
     SUMS,
     THREE,
-    TOO_MANY,
     TURN,
     load,
     of_kind,
     store,
     swept,
-    turned_back,
+    rotated_back,
     with_shear,
 )
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
@@ -56,8 +56,10 @@ from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import add_values, load_values
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
+from mesokit.method.mpcd.engine.embedded.near import note
+from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
 from mesokit.method.mpcd.engine.where import where
-from mesokit.scalar.fixed_point import add_integers, added_quanta, integers
+from mesokit.scalar.fixed_point import add_integers, added_quanta, floats, integers
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import optional, scalar, seldom
 from mesokit.scalar.poisson import poisson_number
@@ -126,7 +128,7 @@ def draw_gas(worker, now, physics, bodies, i, copy):
             for a in range(int(high[0] - low[0]) + 1):
                 middle = with_item(middle, 0, low[0] + a + 0.5 - grid.origin[0])
                 if is_cut(bodies, i, added_scaled(middle, -1.0, x)):
-                    fill_cell(worker, now, physics, bodies, i, x, speed, middle)
+                    fill_cell_of_body(worker, now, physics, bodies, i, x, speed, middle)
 
 
 @where("(x, zero)", box=lambda box: box.instance_class in SLIDING)
@@ -142,7 +144,7 @@ def depth_at(bodies, i, s):
     """Distance of a place at an arm from the surface of body i, negative inside."""
     if of_kind(bodies, i, IS_BALL) > 0.5:
         return math.sqrt(dot(s, s)) - of_kind(bodies, i, RADIUS)
-    y = turned_back(load(bodies.rows, i, TURN, FOUR), s)
+    y = rotated_back(load(bodies.rows, i, TURN, FOUR), s)
     c, _ = state.clearance(bodies, bodies.kind[i], y)
     return c
 
@@ -154,7 +156,7 @@ def is_cut(bodies, i, s):
 
 
 @seldom
-def fill_cell(worker, now, physics, bodies, i, x, speed, middle):
+def fill_cell_of_body(worker, now, physics, bodies, i, x, speed, middle):
     """The gas of body i in a cell: places of an ideal gas, of which those in the body are kept."""
     thread, counter = worker.thread, now.counter
     gas, here = bodies.gas[thread], bodies.counters[thread]
@@ -162,6 +164,7 @@ def fill_cell(worker, now, physics, bodies, i, x, speed, middle):
     key = np.int64(i) * np.int64(bodies.cells + 1) + cell
     m, mean = bodies.gas_mass, bodies.density * of_kind(bodies, i, FILLED)
     width = math.sqrt(physics.kT / m)
+    found = no_moments(middle)
     for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
         a, b, c, _ = words(counter, BODY_GAS_PLACE, key, j)
         within = first((unit_open(a), unit_open(b), unit_open(c)), middle)
@@ -169,7 +172,7 @@ def fill_cell(worker, now, physics, bodies, i, x, speed, middle):
         if depth_at(bodies, i, s) < 0.0:
             n = here[GAS_COUNT]
             if n == gas.shape[0]:
-                note(here, counter.step, TOO_MANY, i + 1)
+                note(bodies.faults[thread], counter.step, TOO_MANY, i + 1)
                 return
             a, b, c, e = words(counter, BODY_GAS_VELOCITY, key, j)
             thermal = scaled(width, normals(middle, a, b, c, e))
@@ -178,9 +181,13 @@ def fill_cell(worker, now, physics, bodies, i, x, speed, middle):
             store(gas, n, GAS_ARM, s)
             gas[n, GAS_SPEED] = speed
             bodies.gas_number[thread, n] = FIRST_BODY_GAS + key * MOST_OF_CELL + j
+            bodies.gas_cell[thread, n] = cell
             bodies.gas_body[thread, n] = i
             here[GAS_COUNT] = n + 1
-            add_hit(bodies, bodies.sums[thread, i], i, m, s, s, thermal, physics)
+            arm, p = scaled(1.0 / bodies.lever, s), scaled(m, thermal)
+            found = added(found, moments_at(m, arm) + p + outer(arm, p))
+    # The terms of a cell are added before they are rounded, in the order in which they were drawn.
+    add_moments(bodies.sums[thread, i], found, middle, physics_scales(bodies, physics))
 
 
 @scalar
@@ -221,11 +228,10 @@ def move_gas(thread, now, physics, fluid, bodies, n):
     r, v, _ = fold(now.box, r, v, now.grid.shift)
     m, number = bodies.gas_mass, bodies.gas_number[thread, n]
     kept, own = contribute(physics.rule, now.counter, (number, 0), m, v, in_cell(r, now.grid))
-    cell = np.int64(cell_index(r, now.grid))
+    cell = bodies.gas_cell[thread, n]
     store(gas, n, GAS_PLACE, r)
     store(gas, n, GAS_VELOCITY, v)
     store(gas, n, GAS_KEPT, kept)
-    bodies.gas_cell[thread, n] = cell
     sums = fluid.cells.sums[thread]
     place = np.uint64(cell) * np.uint64(sums_length(len(physics.terms)))
     sums[place] += optional(tally(physics.energy, m, v), 1)

@@ -34,7 +34,6 @@ from mesokit.method.mpcd.engine.bodies.near import (
     bodies_near,
     body_near,
     box_at_start,
-    note,
 )
 from mesokit.method.mpcd.engine.bodies.put_back import put_all_back
 from mesokit.method.mpcd.engine.bodies.state import (
@@ -83,9 +82,9 @@ from mesokit.method.mpcd.engine.bodies.state import (
     place_at,
     spin_of,
     store,
-    surface_velocity,
-    turned,
-    turned_back,
+    rigid_velocity,
+    rotated,
+    rotated_back,
     with_shear,
 )
 from mesokit.method.mpcd.engine.bodies.swim import squirming
@@ -93,12 +92,20 @@ from mesokit.method.mpcd.engine.cpu.bounce import fly_among, take_sum
 from mesokit.method.mpcd.engine.cpu.groups import STREAM
 from mesokit.method.mpcd.engine.cpu.physics import field_of, has_solid, momentum_scale
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass
+from mesokit.method.mpcd.engine.embedded.near import note
 from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.streaming import fall, halfway, vector
-from mesokit.scalar.fixed_point import add_integers, added_quanta, integers, quanta
+from mesokit.scalar.fixed_point import (
+    add_integers,
+    added_quanta,
+    floats,
+    integers,
+    opposite,
+    quanta,
+)
 from mesokit.scalar.intrinsics import with_item
-from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
+from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added, added_scaled, dot, outer, scaled
 
 ROUNDS = 8  # of hits of a particle in a timestep; then it flies on freely
@@ -193,10 +200,10 @@ def find_hit(worker, now, physics, fluid, bodies, j, n, trial):
     box, cell, left = box_at_start(now, physics), numbers[thread, j, CELL], numbers[thread, j, LEFT]
     lane = numbers[thread, j, LANE]
     impulse = bodies.waste[thread] if trial else fluid.taken.impulse[thread]
-    flight = Flight(box, cell, left, where_from, begin)
-    time, i, r, v = to_body(
-        physics, now.counter, fluid.particles, bodies, flight, lane, n, r, v, a, impulse
-    )
+    m, number = mass_of_lane(physics, fluid.particles, lane), fluid.particles.ident[lane]
+    flight = Flight(box, cell, left, where_from, begin, a)
+    draws = Draws(now.counter, number, m, n * BLOCK)
+    time, i, r, v = to_body(physics, bodies, flight, draws, r, v, impulse)
     values[j, TIME] = time
     numbers[thread, j, BODY] = i
     if i == NO_BODY:
@@ -212,7 +219,6 @@ def find_hit(worker, now, physics, fluid, bodies, j, n, trial):
     store(values, j, ARM, s)
     store(values, j, NORMAL, normal)
     values[j, SHEAR] = speed
-    m = mass_of_lane(physics, fluid.particles, lane)
     u = wall_velocity(bodies, i, s, normal, speed)
     add_hit(bodies, bodies.sums[thread, i], i, m, s, normal, added_scaled(v, -1.0, u), physics)
     return 1
@@ -222,7 +228,7 @@ def find_hit(worker, now, physics, fluid, bodies, j, n, trial):
 def wall_velocity(bodies, i, s, normal, speed):
     """Velocity of the surface of body i at an arm: rigid motion, image and squirming."""
     v, spin = load(bodies.rows, i, VELOCITY, s), load(bodies.rows, i, SPIN, THREE)
-    return added(surface_velocity(v, spin, s, speed), squirming(bodies, i, s, normal))
+    return added(rigid_velocity(v, spin, s, speed), squirming(bodies, i, s, normal))
 
 
 @scalar
@@ -238,34 +244,51 @@ def add_hit(bodies, sums, i, m, s, normal, g, physics):
                 sums[first] += quanta(m * c[a] * c[b], by_mass)
                 first += 1
         p = scaled(m * dot(normal, g), normal)
+        both = p + outer(arm, p)
+        add_integers(sums[first:], added_quanta(both, by_momentum, integers(both)))
     else:
-        first = add_moments(sums, m, arm, by_mass)
         p = scaled(m, g)
-    both = p + outer(arm, p)
-    add_integers(sums[first : first + len(both)], added_quanta(both, by_momentum, integers(both)))
+        found = moments_at(m, arm) + p + outer(arm, p)
+        add_moments(sums, found, s, (by_mass, by_momentum))
 
 
 @by_type
-def add_moments(sums, m, arm, scale):
-    """Add m, m s and m s s^T (in 2D m s^2); the number of these."""
+def moments_at(m, arm):
+    """m, m s and m s s^T (in 2D m s^2)."""
     if len(arm) == 2:
+        return lambda m, arm: (
+            m,
+            m * arm[0],
+            m * arm[1],
+            m * (arm[0] * arm[0] + arm[1] * arm[1]),
+        )
 
-        def planar(sums, m, arm, scale):
-            square = arm[0] * arm[0] + arm[1] * arm[1]
-            terms = (m, m * arm[0], m * arm[1], m * square)
-            add_integers(sums, added_quanta(terms, scale, integers(terms)))
-            return 4
-
-        return planar
-
-    def spatial(sums, m, arm, scale):
+    def spatial(m, arm):
         x, y, z = arm
         squares = (m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z)
-        terms = (m, m * x, m * y, m * z) + squares
-        add_integers(sums, added_quanta(terms, scale, integers(terms)))
-        return 10
+        return (m, m * x, m * y, m * z) + squares
 
     return spatial
+
+
+@by_type
+def no_moments(pattern):
+    """The moments and momenta of nothing."""
+    nothing = (0.0,) * (7 if len(pattern) == 2 else 16)
+    return lambda pattern: nothing
+
+
+@by_type
+def add_moments(sums, found, pattern, scales):
+    """Add moments and momenta to the sums of a body, in whole numbers."""
+    moments = 4 if len(pattern) == 2 else 10
+
+    def add(sums, found, pattern, scales):
+        some, rest = found[:moments], found[moments:]
+        add_integers(sums, added_quanta(some, scales[0], integers(some)))
+        add_integers(sums[moments:], added_quanta(rest, scales[1], integers(rest)))
+
+    return add
 
 
 @scalar
@@ -277,17 +300,29 @@ def mass_of_lane(physics, particles, lane):
 
 class Flight(NamedTuple):
     """A flight in search of bodies: the box at the beginning of the step, the cell whose list is
-    tried, the body that it has left, where the step began, and the time since then."""
+    tried, the body that it has left, where the step began, the time since then, and the
+    acceleration."""
 
     box: tuple
     cell: int
     left: int
     start: tuple
     begin: float
+    a: tuple
+
+
+class Draws(NamedTuple):
+    """What random reflections by walls depend on: the step, the particle, its mass, and the first
+    number of a hit."""
+
+    counter: tuple
+    number: int
+    mass: float
+    first: int
 
 
 @by_type
-def to_body(physics, counter, particles, bodies, flight, lane, n, r, v, a, impulse):
+def to_body(physics, bodies, flight, draws, r, v, impulse):
     """Time in the step, body, place and velocity of the next hit; NO_BODY at the end of the step.
 
     Walls reflect the particle on its way.
@@ -295,8 +330,8 @@ def to_body(physics, counter, particles, bodies, flight, lane, n, r, v, a, impul
     return _to_body_among_walls if has_solid(physics) else _to_body
 
 
-def _to_body(physics, counter, particles, bodies, flight, lane, n, r, v, a, impulse):
-    left = physics.timestep - flight.begin
+def _to_body(physics, bodies, flight, draws, r, v, impulse):
+    a, left = flight.a, physics.timestep - flight.begin
     time, i = first_body(bodies, flight, r, v, a, flight.begin, left)
     if i == NO_BODY:
         r, v = fall(r, v, of_field(physics, a), left)
@@ -313,9 +348,9 @@ def of_field(physics, a):
     return lambda physics, a: a
 
 
-def _to_body_among_walls(physics, counter, particles, bodies, flight, lane, n, r, v, a, impulse):
+def _to_body_among_walls(physics, bodies, flight, draws, r, v, impulse):
     solid, begin, end = physics.solid, flight.begin, physics.timestep
-    m, number = mass_of_lane(physics, particles, lane), particles.ident[lane]
+    a, counter, number, m = flight.a, draws.counter, draws.number, draws.mass
     time, i = first_body(bodies, flight, r, v, a, begin, end - begin)
     if begin == 0.0 and i == NO_BODY:  # as a particle far from all bodies
         r, v = fly_among(physics, counter, (number, m), r, v, impulse)
@@ -331,7 +366,7 @@ def _to_body_among_walls(physics, counter, particles, bodies, flight, lane, n, r
         x, v = fall(x, v, a, hit)
         begin += hit
         if happens(solid, contact):
-            chance = Chance(counter.seed, counter.step, number, n * BLOCK + k, physics.kT / m)
+            chance = Chance(counter.seed, counter.step, number, draws.first + k, physics.kT / m)
             x, after = rebound(solid, contact, x, v, chance)
             lost = scaled(m, added_scaled(v, -1.0, after))
             given = lost + outer(lever(solid, contact, x), lost)
@@ -407,11 +442,11 @@ def time_of_fall(height, v, a, time):
 
 @scalar
 def clearance_of_flight(bodies, i, y, w, a, begin, t):
-    """Distance from body i of a place on a flight, as the body has turned by then."""
+    """Distance from body i of a place on a flight, as the body has rotated by then."""
     x = added_scaled(added_scaled(y, t, w), 0.5 * t * t, a)
     spin = load(bodies.rows, i, MEAN_SPIN, THREE)
     q = after_turn(load(bodies.rows, i, TURN, FOUR), spin, begin + t)
-    c, _ = state.clearance(bodies, bodies.kind[i], turned_back(q, x))
+    c, _ = state.clearance(bodies, bodies.kind[i], rotated_back(q, x))
     return c
 
 
@@ -434,7 +469,7 @@ def time_to_shape(bodies, i, y, w, a, begin, time):
         if c < 0.0:
             if above <= ON_SURFACE and t == 0.0:  # it starts on the surface
                 return 0.0 if descends(bodies, i, y, w, spin, begin) else late
-            return crossing(bodies, i, (y, w, a), begin, (t, step), (max(above, 0.0), c))
+            return time_of_crossing(bodies, i, (y, w, a), begin, (t, step), (max(above, 0.0), c))
         t = step
     return late
 
@@ -447,7 +482,7 @@ def descends(bodies, i, y, w, spin, begin):
 
 
 @seldom
-def crossing(bodies, i, flight, begin, times, distances):
+def time_of_crossing(bodies, i, flight, begin, times, distances):
     """The last time found outside, when a flight crosses a surface between two times, at which its
     distances from it are positive and negative."""
     (y, w, a), (outside, inside), (above, below) = flight, times, distances
@@ -475,9 +510,9 @@ def normal_at(bodies, i, s, time):
     if of_kind(bodies, i, IS_BALL) > 0.5:
         return scaled(1.0 / math.sqrt(dot(s, s)), s)
     q = after_turn(load(bodies.rows, i, TURN, FOUR), load(bodies.rows, i, MEAN_SPIN, THREE), time)
-    y = turned_back(q, s)
+    y = rotated_back(q, s)
     _, part = state.clearance(bodies, bodies.kind[i], y)
-    return turned(q, state.normal_of(bodies, part, y))
+    return rotated(q, state.normal_of(bodies, part, y))
 
 
 # --- the reflection -------------------------------------------------------------------------------
@@ -515,7 +550,7 @@ def reflect(worker, physics, fluid, bodies, j):
     normal, speed = load(values, j, NORMAL, physics.zero), values[j, SHEAR]
     u = wall_velocity(bodies, i, s, normal, speed)
     dv, dw = load(bodies.rows, i, CHANGE, s), load(bodies.rows, i, CHANGE + 3, THREE)
-    u = added_scaled(u, 0.5, surface_velocity(dv, dw, s, 0.0))
+    u = added_scaled(u, 0.5, rigid_velocity(dv, dw, s, 0.0))
     g = added_scaled(v, -1.0, u)
     if of_kind(bodies, i, IS_SLIP) > 0.5:
         g = scaled(dot(normal, g), normal)
@@ -530,20 +565,8 @@ def reflect(worker, physics, fluid, bodies, j):
     add_integers(taken[len(s) :], opposite(added_quanta(turn, scale, integers(turn))))
     # A flight that does not lead away from the moving surface ends on it: it is put there later.
     mean = load(bodies.rows, i, MEAN_VELOCITY, s), load(bodies.rows, i, MEAN_SPIN, THREE)
-    rise = dot(normal, added_scaled(v, -1.0, surface_velocity(mean[0], mean[1], s, speed)))
+    rise = dot(normal, added_scaled(v, -1.0, rigid_velocity(mean[0], mean[1], s, speed)))
     bodies.numbers[thread, j, LEFT] = NO_BODY if rise > 0.0 else i
-
-
-@elementwise
-def opposite(a):
-    """The opposite of a vector of whole numbers."""
-    return "-a[{k}]"
-
-
-@elementwise
-def floats(a):
-    """A vector of whole numbers as floats."""
-    return "float(a[{k}])"
 
 
 @scalar
@@ -610,7 +633,7 @@ def finish_flights(worker, now, physics, fluid, bodies):
         r, moved, free = put_outside(physics, now.box, bodies, cell, r)
         here[PUT_BACK] += np.int64(moved)
         if not free:
-            note(here, now.counter.step, CAUGHT, fluid.particles.ident[lane] + 1)
+            note(bodies.faults[thread], now.counter.step, CAUGHT, fluid.particles.ident[lane] + 1)
         store(values, j, R, r)
 
 
@@ -657,7 +680,7 @@ def deepest(box, bodies, cell, r):
             if of_kind(bodies, i, IS_BALL) > 0.5:
                 c = math.sqrt(dot(s, s)) - radius
             else:
-                y = turned_back(load(bodies.rows, i, TURN, FOUR), s)
+                y = rotated_back(load(bodies.rows, i, TURN, FOUR), s)
                 c, _ = state.clearance(bodies, bodies.kind[i], y)
             if c < least:
                 least, out = c, normal_at(bodies, i, s, 0.0)

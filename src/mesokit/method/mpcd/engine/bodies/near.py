@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from mesokit.case.box import at_time, fold
-from mesokit.loops.layout import share
+from mesokit.loops.layout import LANES, share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.state import (
@@ -33,14 +33,10 @@ from mesokit.method.mpcd.engine.bodies.state import (
     START,
     START_V,
     SPARE,
-    STEP,
     STRIDE,
     THREE,
     TIME,
-    TOO_MANY,
     TURN,
-    WHAT,
-    WHICH,
     image_near,
     load,
     of_kind,
@@ -48,6 +44,8 @@ from mesokit.method.mpcd.engine.bodies.state import (
 )
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
+from mesokit.method.mpcd.engine.embedded.near import note
+from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
 from mesokit.method.mpcd.streaming import halfway, vector
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
@@ -60,14 +58,8 @@ LISTS_HOLD = 0.15  # cells: lists are made anew when a surface has gone so far
 PARTNERS_HOLD = 0.5  # cells: the farthest that surfaces may go with one list of partners
 PARTS = 64.0  # of a cell: what is clear is kept in whole numbers of these
 FAR = np.uint8(LIST_REACH * PARTS)
-ALLOWANCE = 1  # where scratch memory has the farthest that surfaces go with one list
-
-
-@scalar
-def note(counters, step, what, which):
-    """Note the first thing that goes wrong."""
-    if counters[STEP] == 0:
-        counters[STEP], counters[WHAT], counters[WHICH] = np.int64(step), what, np.int64(which)
+FARTHEST, ALLOWANCE = 250, 251  # where scratch memory has how far
+# surfaces go with one list
 
 
 @scalar
@@ -78,9 +70,10 @@ def box_at_start(now, physics):
 
 @scalar
 def path_of_surface(bodies, i, time):
-    """The longest path of any place on a body in a timestep."""
+    """The longest way that the surface of a body goes in a timestep; a ball that turns stays."""
     u, w = load(bodies.rows, i, MEAN_VELOCITY, THREE), load(bodies.rows, i, MEAN_SPIN, THREE)
-    return time * (math.sqrt(dot(u, u)) + of_kind(bodies, i, RADIUS) * math.sqrt(dot(w, w)))
+    turning = 0.0 if of_kind(bodies, i, IS_BALL) > 0.5 else of_kind(bodies, i, RADIUS)
+    return time * (math.sqrt(dot(u, u)) + turning * math.sqrt(dot(w, w)))
 
 
 @scalar
@@ -94,7 +87,7 @@ def keep_lists(worker, now, physics, bodies):
         box = box_at_start(now, physics)
         list_by_cells(worker, box, bodies, physics.zero)
         for i in range(first, last):
-            list_partners(bodies, box, i, physics.zero)
+            list_other_bodies(bodies, box, i, physics.zero)
         barrier(worker)
         for i in range(first, last):
             bodies.rows[i, PATH] = 0.0
@@ -103,10 +96,10 @@ def keep_lists(worker, now, physics, bodies):
 @scalar
 def farthest_of_all(worker, bodies, farthest):
     """The largest of a number of each thread."""
-    bodies.work[worker.thread, 0] = farthest
+    bodies.work[worker.thread, FARTHEST] = farthest
     barrier(worker)
     for t in range(worker.threads):
-        farthest = max(farthest, bodies.work[t, 0])
+        farthest = max(farthest, bodies.work[t, FARTHEST])
     barrier(worker)
     return farthest
 
@@ -149,15 +142,15 @@ def list_by_cells(worker, box, bodies, zero):
     for cell in range(first, last):
         bodies.near_count[cell] = 0
         for cube in range(1 << d):
-            bodies.clear[(cell << d) + cube] = FAR
+            bodies.clear[half_of(bodies, cell, cube, d)] = FAR
     # Body by body, the cells of a cube about it. A thread writes the lists of its own cells only,
     # and bodies come in the order of their numbers.
     for i in range(len(bodies.rows)):
-        mark_around(bodies, box, i, (first, last), zero)
+        list_around(bodies, box, i, (first, last), zero)
 
 
 @scalar
-def mark_around(bodies, box, i, mine, zero):
+def list_around(bodies, box, i, mine, zero):
     """Put body i on the lists of those of my cells that its surface comes near."""
     d, x, radius = len(zero), load(bodies.rows, i, PLACE, zero), of_kind(bodies, i, RADIUS)
     reach = LIST_REACH + HALF_DIAGONAL + (0.5 if slides(box) else 0.0)
@@ -191,7 +184,7 @@ def distance_of(bodies, kind, q, s):
     """Distance of a place at an arm from the surface of a body of a kind, negative inside."""
     if bodies.kinds[kind, IS_BALL] > 0.5:
         return math.sqrt(dot(s, s)) - bodies.kinds[kind, RADIUS]
-    c, _ = state.clearance(bodies, kind, state.turned_back(q, s))
+    c, _ = state.clearance(bodies, kind, state.rotated_back(q, s))
     return c
 
 
@@ -205,8 +198,20 @@ def clear_cubes(bodies, box, kind, q, cell, s):
             at = with_item(at, k, s[k] + (0.25 if (cube >> k) & 1 else -0.25))
         c = distance_of(bodies, kind, q, at) - 0.5 * HALF_DIAGONAL - (0.5 if slides(box) else 0.0)
         clear = np.uint8(int(min(max(c, 0.0), LIST_REACH) * PARTS))
-        place = (cell << d) + cube
+        place = half_of(bodies, cell, cube, d)
         bodies.clear[place] = min(bodies.clear[place], clear)
+
+
+@scalar
+def half_of(bodies, cell, cube, d):
+    """Number, among the cubes of half a cell, of one of those of a cell."""
+    place, stride, rest = 0, 1, cell
+    for k in range(d):
+        cells = int(bodies.grid.cells[k])
+        place += (2 * (rest % cells) + ((cube >> k) & 1)) * stride
+        rest //= cells
+        stride *= 2 * cells
+    return place
 
 
 @scalar
@@ -223,7 +228,7 @@ def put_on_list(bodies, cell, i):
 
 
 @seldom
-def list_partners(bodies, box, i, zero):
+def list_other_bodies(bodies, box, i, zero):
     """The other bodies that may come within the range of the potential of gaps."""
     x, found = load(bodies.rows, i, PLACE, zero), 0
     for j in range(len(bodies.rows)):
@@ -243,7 +248,7 @@ def list_partners(bodies, box, i, zero):
 
 
 @scalar
-def path_of(bodies, physics, r, v):
+def longest_flight(bodies, physics, r, v):
     """The longest path that a particle can fly in a timestep."""
     a, time = vector(halfway(physics.field, r, v, physics.timestep), r), physics.timestep
     path = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
@@ -251,20 +256,29 @@ def path_of(bodies, physics, r, v):
 
 
 @scalar
-def choose_near(worker, now, physics, bodies, strip, s, count, marks):
+def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
     """Put the particles of strip s that may meet a body on the list of this thread.
 
     Their lanes become the first entries of `marks`; returns their number.
     """
     zero, thread, candidates, chosen = physics.zero, worker.thread, 0, 0
     d, box, allowance = len(zero), box_at_start(now, physics), bodies.work[thread, ALLOWANCE]
-    # Coarse test of all lanes at t, before the flight, by what is clear around cubes. No branches.
-    for i in range(count):
+    cubes, any_near = bodies.cubes[thread], np.int32(0)
+    # Coarse test of all lanes at t, before the flight, by what is clear around cubes. Three loops,
+    # of which the first and the last become vectors: between them is the gather from the table.
+    for i in range(LANES):
+        cubes[i] = cube_of(bodies, box, load_particle(strip, i, 0, zero))
+    for i in range(LANES):
+        cubes[i] = np.int32(bodies.clear[np.uint32(cubes[i])])
+    for i in range(LANES):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        clear = float(bodies.clear[cube_of(bodies, box, r)]) * (1.0 / PARTS) - allowance
-        marks[i] = np.int64(not path_of(bodies, physics, r, v) < clear)
+        clear = float(cubes[i]) * (1.0 / PARTS) - allowance
+        cubes[i] = np.int32(not longest_flight(bodies, physics, r, v) < clear)
+        any_near |= cubes[i]
     # Compact the lanes of candidates to the front, again without branches.
-    for i in range(count):
+    for i in range(count if any_near != 0 else 0):
+        marks[i] = np.int64(cubes[i])
+    for i in range(count if any_near != 0 else 0):
         mark = marks[i]
         marks[candidates] = i
         candidates += mark
@@ -272,14 +286,14 @@ def choose_near(worker, now, physics, bodies, strip, s, count, marks):
     for j in range(candidates):
         i = marks[j]
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        path = path_of(bodies, physics, r, v)
+        path = longest_flight(bodies, physics, r, v)
         cell = np.int64(cell_of(bodies, box, r))
         if not path + allowance < LIST_REACH or bodies.near_count[cell] == EVERY_BODY:
             cell = np.int64(EVERY_BODY)
-        if may_meet(bodies, physics, box, cell, r, v, path):
+        if may_hit(bodies, physics, box, cell, r, v, path):
             n = bodies.counters[thread, COUNT]
             if n == bodies.values.shape[1]:
-                note(bodies.counters[thread], now.counter.step, TOO_MANY, 0)
+                note(bodies.faults[thread], now.counter.step, TOO_MANY, 0)
                 break
             store(bodies.values[thread], n, START, r)
             store(bodies.values[thread], n, START_V, v)
@@ -316,13 +330,9 @@ def cell_of(bodies, box, r):
 
 @scalar
 def cube_of(bodies, box, r):
-    """The half of a cell in each direction, of which it is known what is clear."""
-    here = in_lists(box, r)
-    cell, cube = np.int64(cell_index(here, bodies.grid)), np.int64(0)
-    for k in range(len(here)):
-        upper = here[k] - floor(here[k]) >= 0.5
-        cube |= np.int64(upper) << k
-    return (cell << len(here)) + cube
+    """The half of a cell in each direction, of which it is known what is clear: cells of half the
+    size, numbered as those of the lists are."""
+    return cell_index(scaled(2.0, in_lists(box, r)), bodies.halves)
 
 
 @scalar
@@ -338,29 +348,30 @@ def body_near(bodies, cell, n):
 
 
 @seldom
-def may_meet(bodies, physics, box, cell, r, v, path):
+def may_hit(bodies, physics, box, cell, r, v, path):
     """Whether a particle at r, which flies so far, may meet a body on the list of its cell.
 
     It follows from places and velocities alone. A ball that is larger by what its motion may still
     change must lie on the straight flight of a particle that no force and no wall bends.
     """
     time = physics.timestep
-    straight = path <= time * math.sqrt(dot(v, v))
+    square = dot(v, v)
+    straight = path * path <= time * time * square * (1.0 + 1e-12)
     for n in range(bodies_near(bodies, cell)):
         i = body_near(bodies, cell, n)
         x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
-        away, stride = added_scaled(r, -1.0, x), bodies.rows[i, STRIDE]
-        bound, square = of_kind(bodies, i, RADIUS) + path + stride, dot(away, away)
-        if square > bound * bound:
-            continue
-        if of_kind(bodies, i, IS_BALL) > 0.5:
-            u = state.with_shear(load(bodies.rows, i, MEAN_VELOCITY, r), speed)
-            w = added_scaled(v, -1.0, u)
-            if not straight or meets_ball(of_kind(bodies, i, RADIUS) + stride, away, w, time):
+        away, stride, kind = added_scaled(r, -1.0, x), bodies.rows[i, STRIDE], bodies.kind[i]
+        if bodies.kinds[kind, IS_BALL] > 0.5:
+            radius = bodies.kinds[kind, RADIUS] + stride
+            if straight:
+                u = state.with_shear(load(bodies.rows, i, MEAN_VELOCITY, r), speed)
+                if meets_ball(radius, away, added_scaled(v, -1.0, u), time):
+                    return True
+            elif dot(away, away) <= (radius + path) * (radius + path):
                 return True
         else:
             q = load(bodies.rows, i, TURN, state.FOUR)
-            c, _ = state.clearance(bodies, bodies.kind[i], state.turned_back(q, away))
+            c, _ = state.clearance(bodies, kind, state.rotated_back(q, away))
             if not c > path + stride:
                 return True
     return False

@@ -10,6 +10,7 @@ from mesokit.errors import RunError
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.threads import Worker
 from mesokit.method.mpcd.body.protocol import named
+from mesokit.method.mpcd.engine.beads.interactions import first_fault
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.allocate import masses_of
 from mesokit.method.mpcd.engine.bodies.hits import deepest
@@ -26,12 +27,9 @@ from mesokit.method.mpcd.engine.bodies.state import (
     PUT_BACK,
     SECOND_HITS,
     SPIN,
-    STEP,
     TORQUE,
     TURN,
     VELOCITY,
-    WHAT,
-    WHICH,
 )
 from mesokit.scalar.vector import row, scaled
 
@@ -104,7 +102,7 @@ class BodyReadings:
 
     @property
     def angles(self) -> Floats:
-        """Angular velocities, summed over time (bodies, 3): how far each has turned."""
+        """Angular velocities, summed over time (bodies, 3): how far each has rotated."""
         return self._columns(ANGLE, 3)
 
     @property
@@ -135,8 +133,8 @@ class BodyReadings:
         """Vectors (bodies, 3) along the axes of each body."""
         w, u = self.orientations[:, :1], -self.orientations[:, 1:]
         twist = 2.0 * np.cross(u, vectors)
-        turned: Floats = vectors + w * twist + np.cross(u, twist)
-        return turned
+        rotated: Floats = vectors + w * twist + np.cross(u, twist)
+        return rotated
 
     def motion(self) -> Floats:
         """Momentum and twice the kinetic energy, that of rotation included (d + 1,)."""
@@ -177,16 +175,13 @@ class BodyReadings:
             rows[:, first : first + number] = given[f"body_{name}"]
         rows[:, state.END_TURN : state.END_TURN + 4] = rows[:, TURN : TURN + 4]
         rows[:, PATH] = MAKE_LISTS
-        self.state_of.counters[:] = 0
+        self.state_of.counters[:] = self.state_of.faults[:] = 0
 
     def check(self) -> None:
         """That all bodies could be followed in the last steps. Raises RunError."""
-        counters = self.state_of.counters
-        noted = counters[counters[:, STEP] > 0]
-        if not len(noted):
+        if (found := first_fault(self.state_of.faults)) is None:
             return
-        first = noted[np.lexsort((noted[:, WHICH], noted[:, STEP]))][0]
-        step, what, which = int(first[STEP]), int(first[WHAT]), int(first[WHICH])
+        step, what, which = found
         if what == CAUGHT:
             raise RunError(
                 f"step {step}: particle {which - 1} is caught between bodies; expected a longer "

@@ -30,7 +30,7 @@ MASS, INVERSE, ROOT = 0, 1, 4  # 1/mass and its root, for each axis: 0 where it 
 RADIUS, IS_BALL, IS_SLIP, FILLED = 7, 8, 9, 10  # FILLED: virtual particles over those of the fluid
 INERTIA, INVERSE_INERTIA, ROOT_INERTIA = 11, 17, 23
 HINGED, HINGE = 29, 30
-PUSH, TWIST, IN_BODY_FRAME = 33, 36, 39  # constant force and torque
+FORCE_GIVEN, TORQUE_GIVEN, IN_BODY_FRAME = 33, 36, 39  # constant force and torque
 SPRING, ANGULAR_SPRING, TOWARDS = 40, 41, 42
 DEPTH, RANGE = 45, 46  # of the potential of gaps; DEPTH 0 for none
 B1, B2, TUMBLES = 47, 48, 49
@@ -54,9 +54,9 @@ SUMS = 27  # whole numbers of a body that threads add up
 GAS_PLACE, GAS_VELOCITY, GAS_KEPT, GAS_ARM, GAS_SPEED = 0, 3, 6, 9, 12
 GAS_COLUMNS = 13
 # Counters of a thread.
-COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT, STEP, WHAT, WHICH = 0, 1, 2, 3, 4, 8, 9, 10
-TOO_MANY, CAUGHT = 1, 2
-COUNTERS = 16
+COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT = 0, 1, 2, 3, 4
+COUNTERS = 8
+CAUGHT = 4  # what a fault may be, beside those of `embedded.state`
 WORK = 256  # floats of scratch memory of a thread
 
 
@@ -69,15 +69,17 @@ class MovingBodies(NamedTuple):
     substeps: of the motion of bodies.
     lever: a power of two not below the largest radius: arms are counted in it. further: what walls
     may add to the path of a particle in a timestep. twice: 1 where hits are found once more with the mean motion, else 0.
-    grid: cells of the box, without shift; near_count (cells + 1,), near (cells + 1,
-    MOST_NEAR_CELL): the bodies near each; clear (cells + 1, 2^d): the distance that is clear around
-    each half of it in each direction. partner_count (bodies,), partners (bodies,
+    grid: cells of the box, without shift; halves: cubes of half the size; cubes (threads, LANES):
+    scratch memory; near_count (cells + 1,), near (cells + 1,
+    MOST_NEAR_CELL): the bodies near each; clear (cubes + 1,): the distance that is clear around each
+    cube. partner_count (bodies,), partners (bodies,
     MOST_PARTNERS): other bodies that may come near.
     values (threads, most, NEAR_COLUMNS), numbers (threads, most, NEAR_NUMBERS): particles near.
     sums (threads, bodies, SUMS): of the hits in hand; taken (threads, bodies, 6): impulses, in
     whole numbers. gas (threads, most, GAS_COLUMNS): virtual particles, each of gas_mass;
     gas_number, gas_cell, gas_body (threads, most): number, cell and body of each.
-    counters (threads, COUNTERS); work (threads, WORK); chosen (threads, LANES): scratch memory;
+    counters (threads, COUNTERS);
+    faults (threads, 8): the first thing that goes wrong; work (threads, WORK); chosen (threads, LANES): scratch memory;
     waste: what walls take by flights that do not count.
     solid: walls as the potential of gaps sees them, or (). pull: the uniform acceleration of all
     that balances forces on bodies.
@@ -97,6 +99,8 @@ class MovingBodies(NamedTuple):
     further: float
     twice: int
     grid: tuple
+    halves: tuple
+    cubes: Any
     near_count: Any
     near: Any
     clear: Any
@@ -112,6 +116,7 @@ class MovingBodies(NamedTuple):
     gas_cell: Any
     gas_body: Any
     counters: Any
+    faults: Any
     work: Any
     chosen: Any
     waste: Any
@@ -146,16 +151,16 @@ def of_kind(bodies, i, column):
 
 
 @by_type
-def turned(q, a):
-    """The vector a, turned by a unit quaternion."""
+def rotated(q, a):
+    """The vector a, rotated by a unit quaternion."""
     if len(a) == 2:
         return lambda q, a: _turned_in_plane(q[0], q[3], a)
     return lambda q, a: _turned(q[0], (q[1], q[2], q[3]), a)
 
 
 @by_type
-def turned_back(q, a):
-    """The vector a, turned by the inverse."""
+def rotated_back(q, a):
+    """The vector a, rotated by the inverse."""
     if len(a) == 2:
         return lambda q, a: _turned_in_plane(q[0], -q[3], a)
     return lambda q, a: _turned(-q[0], (q[1], q[2], q[3]), a)
@@ -232,7 +237,7 @@ def apply_symmetric(kinds, kind, column, a):
 @scalar
 def turn_by(bodies, i, q, column, a):
     """A symmetric matrix of the kind of body i, at an orientation, times a vector of three."""
-    return turned(q, apply_symmetric(bodies.kinds, bodies.kind[i], column, turned_back(q, a)))
+    return rotated(q, apply_symmetric(bodies.kinds, bodies.kind[i], column, rotated_back(q, a)))
 
 
 @scalar
@@ -302,7 +307,7 @@ def with_shear(v, speed):
 
 
 @scalar
-def surface_velocity(v, spin, s, speed):
+def rigid_velocity(v, spin, s, speed):
     """Velocity of a rigid body at s from its centre, in an image with a speed along x."""
     return with_shear(added(v, swept(spin, s)), speed)
 

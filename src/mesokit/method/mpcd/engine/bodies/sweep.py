@@ -8,7 +8,7 @@ import numpy as np
 from mesokit.case.box import SLIDING
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
-from mesokit.method.mpcd.engine.bodies.near import choose_near
+from mesokit.method.mpcd.engine.bodies.near import choose_near_bodies
 from mesokit.method.mpcd.engine.bodies.state import COUNT, IMAGE, PUT_BACK, SECOND_HITS
 from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, STREAM
@@ -57,7 +57,7 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
             stages.gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
             stages.collide_strip(physics, now.old, strip, gathered)
         if now.flags & STREAM:
-            near = choose_near(worker, now, physics, bodies, strip, s, lanes, chosen)
+            near = choose_near_bodies(worker, now, physics, bodies, strip, s, lanes, chosen)
             look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
             left = stages.stream_strip(physics, strip, clear, marks)
             if left != 0:

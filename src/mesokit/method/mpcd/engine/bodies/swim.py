@@ -8,7 +8,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     TURN,
     load,
     of_kind,
-    turned,
+    rotated,
 )
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
@@ -19,7 +19,7 @@ from mesokit.scalar.vector import added_scaled, dot, scaled
 def heading(bodies, i, pattern):
     """The axis x of body i, in the box."""
     axis = with_item(scaled(0.0, pattern), 0, 1.0)
-    return turned(load(bodies.rows, i, TURN, FOUR), axis)
+    return rotated(load(bodies.rows, i, TURN, FOUR), axis)
 
 
 @scalar

@@ -84,6 +84,13 @@ class FluidMemory(NamedTuple):
     taken: Taken
 
 
+class Suspended(NamedTuple):
+    """What moves in the fluid: beads of solutes, and bodies; () where there are none."""
+
+    beads: Any
+    bodies: Any
+
+
 class Walls(NamedTuple):
     """Virtual particles, and by which rule: each field is () where there is none of it."""
 

@@ -22,6 +22,7 @@ from mesokit.method.mpcd.engine.cpu.groups import (
     FluidMemory,
     Particles,
     Scratch,
+    Suspended,
     Taken,
     Walls,
 )
@@ -82,8 +83,9 @@ class Memory:
         return numbers.case.box.kernel(numbers.closed, time, numbers.timestep)
 
     def groups(self) -> tuple[Any, ...]:
-        """Physics, fluid, solutes, bodies and walls as the step takes them."""
-        return self._packing(self.physics, self.fluid, self.solutes, self.bodies, self.walls)
+        """Physics, fluid, what moves in it, and walls as the step takes them."""
+        suspended = Suspended(self.solutes, self.bodies)
+        return self._packing(self.physics, self.fluid, suspended, self.walls)
 
     def _allocate(self) -> None:
         numbers, threads, d = self.numbers, self.threads, self.numbers.dimension

@@ -6,10 +6,11 @@ from mesokit.loops.clock import BEADS, CELLS, FINISH, START, SWEEP, lap
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.coupling import answer_beads, join_beads
 from mesokit.method.mpcd.engine.beads.flight import move_solutes
-from mesokit.method.mpcd.engine.bodies.gas import draw_all_gas, take_recoil
-from mesokit.method.mpcd.engine.bodies.hits import reflect_all
-from mesokit.method.mpcd.engine.bodies.motion import begin_step
-from mesokit.method.mpcd.engine.bodies.sweep import stream_around_bodies
+from mesokit.method.mpcd.engine.bodies.stages import (
+    fill_bodies,
+    recoil_bodies,
+    stream_with_bodies,
+)
 from mesokit.method.mpcd.engine.cell_gradient import fill_neighbour_sums
 from mesokit.method.mpcd.engine.cpu.collide import collide_cells
 from mesokit.method.mpcd.engine.cpu.grid import moved_grid
@@ -38,50 +39,23 @@ from mesokit.method.mpcd.engine.virtual.one_by_one import (
 )
 from mesokit.method.mpcd.engine.virtual.particles import drawn_per_cell
 from mesokit.method.mpcd.engine.virtual.per_cell import fill_cells, recoil_per_cell
-from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import Counter, grid_shift
 
 
 @by_type
-def stream(worker, now, physics, fluid, beads, bodies):
-    """The fluid's part (see `cpu.sweep.stream_fluid`); around bodies that move, and around solutes
+def stream(worker, now, physics, fluid, suspended):
+    """The fluid's part (see `cpu.sweep.stream_fluid`); with bodies that move, and around solutes
     that act by a potential."""
-    if len(bodies) > 0:
-        return lambda worker, now, physics, fluid, beads, bodies: stream_around_bodies(
-            worker, now, physics, fluid, bodies
+    if len(field_of(suspended, "bodies")) > 0:
+        return lambda worker, now, physics, fluid, suspended: stream_with_bodies(
+            worker, now, physics, fluid, suspended.bodies
         )
-    if is_embedded(beads):
-        return lambda worker, now, physics, fluid, beads, bodies: stream_around(
-            worker, now, physics, fluid, beads
+    if is_embedded(field_of(suspended, "beads")):
+        return lambda worker, now, physics, fluid, suspended: stream_around(
+            worker, now, physics, fluid, suspended.beads
         )
-    return lambda worker, now, physics, fluid, beads, bodies: stream_fluid(
-        worker, now, physics, fluid
-    )
-
-
-@where(bodies=len)
-def move_bodies(worker, now, physics, bodies):
-    """Rigid motion of bodies t -> t + dt, by all forces but those of the fluid."""
-    begin_step(worker, now, physics, bodies)
-
-
-@where(bodies=len)
-def hit_bodies(worker, now, physics, fluid, bodies):
-    """Flight of the particles near bodies; their hits, all of a body as one reflection."""
-    reflect_all(worker, now, physics, fluid, bodies)
-
-
-@where(bodies=len)
-def fill_bodies(worker, now, physics, fluid, bodies):
-    """Virtual particles at t + dt in the cells that bodies cut."""
-    draw_all_gas(worker, now, physics, fluid, bodies)
-
-
-@where(bodies=len)
-def recoil_bodies(worker, now, physics, fluid, bodies):
-    """Give bodies what the collision gives their virtual particles."""
-    take_recoil(worker, now, physics, fluid, bodies)
+    return lambda worker, now, physics, fluid, suspended: stream_fluid(worker, now, physics, fluid)
 
 
 @by_type
@@ -108,8 +82,22 @@ def fill_walls(worker, now, physics, fluid, walls):
     return fill_cells if drawn_per_cell(walls) else fill_one_by_one
 
 
+@inner
+def fill_solids(worker, now, physics, fluid, suspended, walls):
+    """Virtual particles of walls, and those of bodies."""
+    fill_walls(worker, now, physics, fluid, walls)
+    fill_bodies(worker, now, physics, fluid, suspended.bodies)
+
+
+@inner
+def recoil(worker, now, physics, fluid, suspended, walls):
+    """The impulses that walls and bodies take by the collision of the virtual particles in them."""
+    recoil_walls(worker, now, physics, fluid, walls)
+    recoil_bodies(worker, now, physics, fluid, suspended.bodies)
+
+
 @by_type
-def recoil(worker, now, physics, fluid, walls):
+def recoil_walls(worker, now, physics, fluid, walls):
     """Add the impulse that walls take by the collision of the virtual particles in them."""
     if len(field_of(walls, "virtual")) == 0:
         return lambda *_: None
@@ -117,16 +105,14 @@ def recoil(worker, now, physics, fluid, walls):
 
 
 @inner
-def step(worker, now, physics, fluid, beads, bodies, walls):
-    """One collision interval: r, v from t to t + dt."""
-    move_bodies(worker, now, physics, bodies)  # their rigid motion t -> t + dt
-    stream(worker, now, physics, fluid, beads, bodies)  # v: collision at t; r, v: t + dt; sums
+def step(worker, now, physics, fluid, suspended, walls):
+    """One collision interval: r, v from t to t + dt. `suspended` has beads and bodies."""
+    beads = suspended.beads
+    stream(worker, now, physics, fluid, suspended)  # v: collision at t; r, v: t -> t + dt; sums
     lap(worker, SWEEP)
-    hit_bodies(worker, now, physics, fluid, bodies)  # particles near bodies: hits, t -> t + dt
     move_beads(worker, now, physics, fluid, beads)  # the same for solutes, in sub-steps
     lap(worker, BEADS)
-    fill_walls(worker, now, physics, fluid, walls)  # virtual particles at t + dt
-    fill_bodies(worker, now, physics, fluid, bodies)  # the same in bodies
+    fill_solids(worker, now, physics, fluid, suspended, walls)  # virtual particles at t + dt
     barrier(worker)
     lap(worker, SWEEP)
     exchange_sums(worker, now, physics, fluid, beads)  # ranks: sums to the owners of cells
@@ -140,37 +126,36 @@ def step(worker, now, physics, fluid, beads, bodies, walls):
     receive_coefficients(worker, now, physics, fluid, walls)  # ranks: from owners of cells
     barrier(worker)
     lap(worker, CELLS)
-    recoil(worker, now, physics, fluid, walls)  # what the collision takes from virtual particles
-    recoil_bodies(worker, now, physics, fluid, bodies)
+    recoil(worker, now, physics, fluid, suspended, walls)  # what it takes from virtual particles
 
 
 @kernel
-def advance(worker, course, physics, fluid, beads, bodies, walls):
+def advance(worker, course, physics, fluid, suspended, walls):
     """Run some steps; velocities are those after the collision of the last when it returns."""
     lap(worker, START)
     now = Now(Counter(course.seed, course.done), course.box, course.grid, course.grid, 0)
     n = 0
     while n < course.steps and room_left(fluid):
-        number, now = interval(worker, course, now, physics, fluid, beads, bodies, walls, n)
+        number, now = interval(worker, course, now, physics, fluid, suspended, walls, n)
         n += number
         count_molecules(fluid)  # ranks: after a migration
     note_done(worker, fluid, n)
     if n > 0:
         now = last_collision(course, now)
-        stream(worker, now, physics, fluid, beads, bodies)
-        move_beads(worker, now, physics, fluid, beads)
+        stream(worker, now, physics, fluid, suspended)
+        move_beads(worker, now, physics, fluid, suspended.beads)
         barrier(worker)
         lap(worker, FINISH)
 
 
 @inner
-def interval(worker, course, now, physics, fluid, beads, bodies, walls, n):
+def interval(worker, course, now, physics, fluid, suspended, walls, n):
     """Steps from the nth on, all or up to the next one after which particles change ranks."""
     first, going = n, True
     while n < course.steps and going:
         now = next_step(course, now, physics, n)
         field = field_of_step(physics, course.done + n)
-        step(worker, now, with_field(physics, field), fluid, beads, bodies, walls)
+        step(worker, now, with_field(physics, field), fluid, suspended, walls)
         going = migrate(worker, now, physics, fluid)
         n += 1
     return n - first, now

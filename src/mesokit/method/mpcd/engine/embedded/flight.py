@@ -30,7 +30,7 @@ from mesokit.method.mpcd.engine.embedded.state import (
 )
 from mesokit.method.mpcd.engine.where import where
 from mesokit.potential.protocol import central
-from mesokit.scalar.fixed_point import add_integers, added_quanta, integers
+from mesokit.scalar.fixed_point import add_integers, added_quanta, floats, integers, opposite
 from mesokit.scalar.jit import elementwise, scalar
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
@@ -160,18 +160,6 @@ def kick_particle(moving, n, step, box, physics, time):
     m = mass_in_lane(physics, moving.particles, embedded.lane[thread, n])
     v = added_scaled(v, 1.0 / (scale * m), floats(given))
     store_values(embedded.v[thread], at, accelerated(physics.field, time, r, v))
-
-
-@elementwise
-def opposite(a):
-    """The opposite of a vector of whole numbers."""
-    return "-a[{k}]"
-
-
-@elementwise
-def floats(a):
-    """A vector of whole numbers as floats."""
-    return "float(a[{k}])"
 
 
 @elementwise

@@ -1,0 +1,28 @@
+"""The stages of a step that bodies add, in their order: the algorithm at a glance."""
+
+from mesokit.kernels.kernel import inner
+from mesokit.method.mpcd.engine.bodies.gas import draw_all_gas, take_recoil
+from mesokit.method.mpcd.engine.bodies.hits import reflect_all
+from mesokit.method.mpcd.engine.bodies.motion import begin_step
+from mesokit.method.mpcd.engine.bodies.sweep import stream_around_bodies
+from mesokit.method.mpcd.engine.where import where
+
+
+@inner
+def stream_with_bodies(worker, now, physics, fluid, bodies):
+    """The collision at t, and the flight t -> t + dt of bodies and fluid."""
+    begin_step(worker, now, physics, bodies)  # forces; one rigid motion of each body
+    stream_around_bodies(worker, now, physics, fluid, bodies)  # particles that no body can reach
+    reflect_all(worker, now, physics, fluid, bodies)  # all others: hits, one reflection a body
+
+
+@where(bodies=len)
+def fill_bodies(worker, now, physics, fluid, bodies):
+    """Virtual particles at t + dt in the cells that bodies cut."""
+    draw_all_gas(worker, now, physics, fluid, bodies)
+
+
+@where(bodies=len)
+def recoil_bodies(worker, now, physics, fluid, bodies):
+    """Give bodies what the collision gives their virtual particles."""
+    take_recoil(worker, now, physics, fluid, bodies)
