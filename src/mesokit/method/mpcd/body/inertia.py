@@ -88,10 +88,10 @@ def _integrals(part: Part, planar: bool) -> tuple[float, Floats, Floats]:
         volume = math.pi * p[6] ** 2 if planar else 4.0 / 3.0 * math.pi * p[6] ** 3
         return volume, middle_of(part), volume * p[6] ** 2 / (d + 2) * across
     if part.kind == "brick":
-        half = np.array(p[3:6])
-        volume = float(np.prod(2.0 * half[:d]))
+        sides = np.array(p[3:6])
+        volume = float(np.prod(2.0 * sides[:d]))
         turn = np.array([[p[6], -p[7], 0.0], [p[7], p[6], 0.0], [0.0, 0.0, 1.0]])
-        return volume, middle_of(part), volume / 3.0 * turn @ np.diag(half**2) @ turn.T
+        return volume, middle_of(part), volume / 3.0 * turn @ np.diag(sides**2) @ turn.T
     if part.kind == "ellipsoid":
         along, wide, axis = p[6], p[7], np.array(p[3:6])
         volume = math.pi * along * wide
@@ -99,18 +99,17 @@ def _integrals(part: Part, planar: bool) -> tuple[float, Floats, Floats]:
         both = np.outer(axis, axis)
         shares = along**2 * both + wide**2 * (across - both)
         return volume, middle_of(part), volume / (d + 2) * shares
-    span, radius = np.array(p[3:6]), p[6]  # a capsule: a rod, and two halves of a ball
-    length = float(np.hypot.reduce(span))
-    axis = span / length
+    radius, length = p[6], math.hypot(*p[3:6])  # a capsule: a rod, and two halves of a ball
+    axis = np.array(p[3:6]) / length
     both, half = np.outer(axis, axis), 0.5 * length
     if planar:
         rod, ends = 2.0 * radius * length, math.pi * radius**2
-        centre, own, wide = 4.0 * radius / (3.0 * math.pi), radius**2 / 4.0, radius**2 / 3.0
+        centre, own, flat = 4.0 * radius / (3.0 * math.pi), radius**2 / 4.0, radius**2 / 3.0
     else:
         rod, ends = math.pi * radius**2 * length, 4.0 / 3.0 * math.pi * radius**3
-        centre, own, wide = 3.0 / 8.0 * radius, radius**2 / 5.0, radius**2 / 4.0
+        centre, own, flat = 3.0 / 8.0 * radius, radius**2 / 5.0, radius**2 / 4.0
     lengthwise = rod * half**2 / 3.0 + ends * (own + half**2 + 2.0 * half * centre)
-    second = lengthwise * both + (rod * wide + ends * own) * (across - both)
+    second = lengthwise * both + (rod * flat + ends * own) * (across - both)
     return rod + ends, middle_of(part), second
 
 

@@ -12,8 +12,8 @@ from mesokit.method.mpcd.body.protocol import GIVEN, LATTICE, RANDOM
 from mesokit.method.mpcd.engine.bodies.allocate import masses_of
 from mesokit.method.mpcd.start.body_room import (
     Apart,
-    free_places,
     deepest_in_wall,
+    free_places,
     overlap,
     periods,
     tree_of,

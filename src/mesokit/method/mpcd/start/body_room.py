@@ -17,7 +17,7 @@ from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.kernels.later import kernel
 from mesokit.method.mpcd.body.inertia import Solid, middle_of
-from mesokit.method.mpcd.engine.bodies.state import FOUR, load, turned, turned_back
+from mesokit.method.mpcd.engine.bodies.state import FOUR, load, rotated, rotated_back
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.pointer import address
@@ -195,12 +195,12 @@ def find_gaps(one, other, zero, pairs, gaps):
 @scalar
 def into_part(shape, part, x, q, r):
     """The place in a part, of a body at x, that is nearest to r."""
-    y = turned_back(q, added_scaled(r, -1.0, x))
+    y = rotated_back(q, added_scaled(r, -1.0, x))
     p, code = shape.parts + 8 * WIDTH * part, shape.part_code[part]
     c = primitive.distance(code, p, shape.parts, y)
     if c <= 0.0:
         return r
-    return added(x, turned(q, added_scaled(y, -c, primitive.normal(code, p, shape.parts, y))))
+    return added(x, rotated(q, added_scaled(y, -c, primitive.normal(code, p, shape.parts, y))))
 
 
 # --- walls ----------------------------------------------------------------------------------------
