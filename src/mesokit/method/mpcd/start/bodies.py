@@ -14,8 +14,8 @@ from mesokit.method.mpcd.start.body_room import (
     Apart,
     deepest_in_wall,
     free_places,
+    open_lengths,
     overlap,
-    periods,
     tree_of,
 )
 from mesokit.method.mpcd.start.draws import Draws
@@ -56,7 +56,7 @@ def first_places(case: Case) -> tuple[Floats, Floats]:
                     f"{found}; expected fewer or smaller bodies, or start.rule = 'lattice'"
                 )
         turns[rows] = _turns(case, kind, ids)
-        placed.append(Apart(tree_of(places[rows], periods(case)), reach))
+        placed.append(Apart(tree_of(places[rows], open_lengths(case)), reach))
     _require_room(case, places, turns)
     return places, turns
 

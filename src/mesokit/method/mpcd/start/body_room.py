@@ -63,7 +63,7 @@ def is_ball(solid: Solid) -> bool:
     return len(solid.parts) == 1 and solid.parts[0].kind == "ball"
 
 
-def periods(case: Case) -> Floats:
+def open_lengths(case: Case) -> Floats:
     """Lengths of the box, 0 where walls close it."""
     closed = closed_axes(case.walls)
     lengths = zip(case.box.axes, case.box.size, strict=True)
@@ -96,7 +96,7 @@ def free_places(
     They are two `reach` from one another, as far from others as both say, `wall` from walls. All
     that have none draw one at a time; of two that are too near the later draws again.
     """
-    d, size, period = case.box.dimension, np.array(case.box.size, float), periods(case)
+    d, size, period = case.box.dimension, np.array(case.box.size, float), open_lengths(case)
     clear = walls_away(case, wall)
     random, left, draws = Draws(case.run.seed, INITIAL_BODIES, ids), np.arange(len(ids)), 0
     places, mine = np.zeros((len(ids), d)), list(others)
@@ -127,7 +127,7 @@ def free_places(
 
 def overlap(case: Case, places: Floats, turns: Floats) -> tuple[int, int] | None:
     """Two bodies, by number, that overlap; None where there are none."""
-    d, period = case.box.dimension, periods(case)
+    d, period = case.box.dimension, open_lengths(case)
     solids, rows = [kind.solid(d) for kind in case.bodies], _rows(case)
     trees = [tree_of(places[some], period) for some in rows]
     for a, b in itertools.combinations_with_replacement(range(len(solids)), 2):
