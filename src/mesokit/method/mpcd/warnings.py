@@ -206,11 +206,10 @@ def _turning_bodies(case: Case, numbers: Derived) -> Iterator[str]:
     """Bodies that turn in a fluid whose stress has a torque of its own."""
     rule, d = case.fluid.collision, case.box.dimension
     turning = any("orientation" not in kind.fixed for kind in case.bodies)
+    known = {name: part for name, part in family_of(rule).parts.items() if part.acts}
+    better = [name for name, part in known.items() if "angular momentum" in part.conserves]
     if not (turning and rule.acts) or "angular momentum" in rule.conserves:
         return
-    better = [
-        n for n, part in family_of(rule).parts.items() if "angular momentum" in part.conserves
-    ]
     friction = "a lower rotational friction"
     if numbers.transport is not None:
         share = numbers.transport.viscosity_collisional / numbers.transport.viscosity
