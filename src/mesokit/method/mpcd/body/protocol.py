@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import field_validator
 
-from mesokit.case.component import component, option, param, show
+from mesokit.case.component import component, name_of, option, param, show
 from mesokit.case.describe.hints import Either, Many
 from mesokit.case.registry import family
 from mesokit.geometry.region import Region
@@ -201,6 +201,11 @@ class Body(ABC):
     def region(self) -> Region:
         """Its parts in its own frame, each a convex primitive."""
 
+    @property
+    def half_axis(self) -> float:
+        """From the centre of a squirmer to an end of its axis."""
+        return 1.0
+
     def solid(self, dimension: int) -> Solid:
         """Volume, inertia and parts about the centre of mass, in 2D or 3D."""
         return _solid(self.region(), dimension == 2)
@@ -229,6 +234,7 @@ def named(bodies: tuple[Any, ...]) -> list[Named]:
     numbers: dict[str, int] = {}
     found = []
     for kind in bodies:
-        number = numbers[kind.shape] = numbers.get(kind.shape, 0) + 1
-        found.append(Named(kind.name or f"{kind.shape}-{number}", kind))
+        shape = name_of(kind)
+        number = numbers[shape] = numbers.get(shape, 0) + 1
+        found.append(Named(kind.name or f"{shape}-{number}", kind))
     return found

@@ -5,11 +5,10 @@ from typing import ClassVar, Literal
 from mesokit.case.component import component, name_of, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
+from mesokit.geometry.primitive import MOVABLE
 from mesokit.geometry.region import Region, Room
 from mesokit.geometry.shape_protocol import Simple
 from mesokit.method.mpcd.body.protocol import Body
-
-KINDS = ("ball", "capsule", "brick", "ellipsoid")  # of which the inertia is known
 
 
 @component
@@ -29,8 +28,8 @@ class UnionBody(Body):
             if part.fluid == "inside":
                 raise ValueError(f"parts[#{i}].fluid = 'inside': expected a solid")
         for i, part in enumerate(self.parts, start=1):
-            kinds = {one.kind for term in self._body(part) for one in term}
-            if not kinds <= set(KINDS):
+            terms = self._body(part)
+            if not all(len(term) == 1 and MOVABLE[term[0].code] for term in terms):
                 raise ValueError(
                     f"parts[#{i}].shape = {name_of(part)!r}: not part of a body that moves"
                 )
