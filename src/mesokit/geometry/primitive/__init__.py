@@ -3,7 +3,8 @@
 Each file has `distance(p, samples, r)`: the signed distance of r from the surface, negative inside
 the solid, or something of its sign that is no larger; `normal(p, samples, r)`; and whether the
 solid is CONVEX. p is a row of WIDTH numbers, of which the first three are a place, so that all can
-be moved alike. The kind of each part is a number at run time: one compiled step serves every case.
+be moved alike. A primitive of which bodies that move can be made also has its `extent`, its
+`width` and its `integrals`. The kind of each part is a number at run time: one compiled step serves every case.
 """
 
 from types import ModuleType
@@ -26,6 +27,7 @@ PRIMITIVES += (ellipsoid,)
 KINDS = {module.__name__.rpartition(".")[2]: number for number, module in enumerate(PRIMITIVES)}
 WIDTH = 12
 CONVEX = tuple(module.CONVEX for module in PRIMITIVES)
+MOVABLE = tuple(hasattr(module, "integrals") for module in PRIMITIVES)
 
 
 def _by_kind(name: str) -> Any:

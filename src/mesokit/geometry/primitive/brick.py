@@ -4,7 +4,11 @@ Cosine and sine of the angle are in p[6] and p[7].
 """
 
 import math
+from collections.abc import Sequence
 
+import numpy as np
+
+from mesokit.geometry.primitive.moments import Integrals
 from mesokit.geometry.primitive.numbers import offset, vector
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
@@ -50,3 +54,21 @@ def normal(p, samples, r):
     else:
         out = with_item(scaled(0.0, r), face, math.copysign(1.0, x[face]))
     return turned(p, out, real(p, 7))
+
+
+def extent(p: Sequence[float]) -> float:
+    """How far it reaches from its centre."""
+    return math.hypot(*p[3:6])
+
+
+def width(p: Sequence[float]) -> float:
+    """Its least width."""
+    return 2.0 * min(x for x in p[3:6] if x > 0)
+
+
+def integrals(p: Sequence[float], d: int) -> Integrals:
+    """Volume, centre and second moments about the centre, in d dimensions."""
+    half = np.array(p[3:6])
+    volume = float(np.prod(2.0 * half[:d]))
+    turn = np.array([[p[6], -p[7], 0.0], [p[7], p[6], 0.0], [0.0, 0.0, 1.0]])
+    return Integrals(volume, np.array(p[:3]), volume / 3.0 * turn @ np.diag(half**2) @ turn.T)

@@ -6,7 +6,11 @@ Y = y / (e w), Z = z f / (e^2 (w + k)), where k = (f / e)^2 - 1 and w > 0 makes 
 """
 
 import math
+from collections.abc import Sequence
 
+import numpy as np
+
+from mesokit.geometry.primitive.moments import Integrals, plane
 from mesokit.geometry.primitive.numbers import length, offset, vector
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar, seldom
@@ -78,3 +82,21 @@ def normal(p, samples, r):
     out = across_axis(out, axis)  # again: what is left of a place near the axis is rounded
     _, n, m = from_surface(p, height, radius)
     return added_scaled(scaled(math.copysign(n, height), axis), m / length(out), out)
+
+
+def extent(p: Sequence[float]) -> float:
+    """How far it reaches from its centre."""
+    return max(p[6], p[7])
+
+
+def width(p: Sequence[float]) -> float:
+    """Its least width."""
+    return 2.0 * min(p[6], p[7])
+
+
+def integrals(p: Sequence[float], d: int) -> Integrals:
+    """Volume, centre and second moments about the centre, in d dimensions."""
+    volume = math.pi * p[6] * p[7] * (1.0 if d == 2 else 4.0 / 3.0 * p[7])
+    along = np.outer(p[3:6], p[3:6])
+    second = p[6] ** 2 * along + p[7] ** 2 * (plane(d) - along)
+    return Integrals(volume, np.array(p[:3]), volume / (d + 2) * second)

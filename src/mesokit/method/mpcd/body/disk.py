@@ -17,5 +17,9 @@ class DiskBody(Body):
     shape: Literal["disk"] = tag("disk")
     radius: float = param(doc="its radius", unit="a", gt=0)
 
+    @property
+    def half_axis(self) -> float:
+        return self.radius
+
     def region(self) -> Region:
         return ball((0.0,) * 2, self.radius)

@@ -22,5 +22,9 @@ class EllipseBody(Body):
 
     _positive = field_validator("size")(positive)
 
+    @property
+    def half_axis(self) -> float:
+        return 0.5 * self.size[0]
+
     def region(self) -> Region:
         return ellipsoid((0.0, 0.0), (1.0, 0.0), 0.5 * self.size[0], 0.5 * self.size[1])

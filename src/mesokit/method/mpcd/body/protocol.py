@@ -206,6 +206,11 @@ class Body(ABC):
     def region(self) -> Region:
         """Its parts in its own frame, each a convex primitive."""
 
+    @property
+    def half_axis(self) -> float:
+        """From the centre of a squirmer to an end of its axis."""
+        return 1.0
+
     def solid(self, dimension: int) -> Solid:
         """Volume, inertia and parts about the centre of mass, in 2D or 3D."""
         return _solid(self.region(), dimension == 2)

@@ -17,5 +17,9 @@ class SphereBody(Body):
     shape: Literal["sphere"] = tag("sphere")
     radius: float = param(doc="its radius", unit="a", gt=0)
 
+    @property
+    def half_axis(self) -> float:
+        return self.radius
+
     def region(self) -> Region:
         return ball((0.0,) * 3, self.radius)

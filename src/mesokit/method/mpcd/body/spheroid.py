@@ -17,5 +17,9 @@ class SpheroidBody(Body):
     half_length: float = param(doc="from its centre to an end of the axis", unit="a", gt=0)
     radius: float = param(doc="its largest radius across the axis", unit="a", gt=0)
 
+    @property
+    def half_axis(self) -> float:
+        return self.half_length
+
     def region(self) -> Region:
         return ellipsoid((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), self.half_length, self.radius)

@@ -2,14 +2,13 @@
 
 from typing import ClassVar, Literal
 
-from mesokit.case.component import component, name_of, param, tag
+from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
+from mesokit.geometry.primitive import MOVABLE
 from mesokit.geometry.region import Region, Room
 from mesokit.geometry.shape_protocol import Simple
 from mesokit.method.mpcd.body.protocol import Body
-
-ENDLESS = ("cylinder", "half-space")  # shapes that have no volume
 
 
 @component
@@ -28,16 +27,17 @@ class UnionBody(Body):
         for i, part in enumerate(self.parts, start=1):
             if part.fluid == "inside":
                 raise ValueError(f"parts[#{i}].fluid = 'inside': expected a solid")
-            if name_of(part) in ENDLESS:
-                raise ValueError(
-                    f"parts[#{i}].shape = {name_of(part)!r}: not part of a body that moves, for it "
-                    "has no end"
-                )
 
     def region(self) -> Region:
-        return region.union(_body(part) for part in self.parts)
+        return region.union(region_of(part) for part in self.parts)
 
 
-def _body(part: Simple) -> Region:
+def region_of(part: Simple) -> Region:
+    """A shape as part of a body."""
     d = 2 if part.dimensions == (2,) else 3
     return part.body(Room((1,) * d, (False,) * d))
+
+
+def moves(part: Simple) -> bool:
+    """Whether a shape can be part of a body: it is convex, and has an end."""
+    return all(len(term) == 1 and MOVABLE[term[0].code] for term in region_of(part))

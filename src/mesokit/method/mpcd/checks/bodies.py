@@ -9,7 +9,7 @@ from mesokit.case.component import name_of, one_of, show, tag_of
 from mesokit.geometry.shape_protocol import Simple, closed_axes
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.body.protocol import Body, named
-from mesokit.method.mpcd.body.union import ENDLESS, UnionBody
+from mesokit.method.mpcd.body.union import UnionBody, moves
 
 MOST_BODIES = 2**24
 MOST_FILLED = 0.9  # of the volume that walls leave
@@ -73,26 +73,27 @@ def _not_yet(case: Case) -> Iterator[str]:
 
 def _shape(case: Case, kind: Body) -> Iterator[str]:
     """A shape of this dimension, and its parts likewise."""
-    d = case.box.dimension
-    if d not in kind.dimensions:
-        from mesokit.method.mpcd.body import BODIES
+    from mesokit.geometry.shape import SHAPES
+    from mesokit.method.mpcd.body import BODIES
 
-        yield f"shape = {show(name_of(kind))}: not in {d}D; expected {_known(BODIES, d)}"
+    d = case.box.dimension
+    usable = [found[1] for one in BODIES if d in one.dimensions and (found := tag_of(one))]
+    if d not in kind.dimensions:
+        yield f"shape = {show(name_of(kind))}: not in {d}D; expected {one_of(usable)}"
+    simple = [found[1] for one in SHAPES if issubclass(one, Simple) and (found := tag_of(one))]
+    expected = one_of([name for name in usable if name in simple])
     for i, part in enumerate(kind.parts if isinstance(kind, UnionBody) else (), start=1):
         key = f"parts[#{i}]"
         if d not in part.dimensions:
-            from mesokit.geometry.shape import SHAPES
-
-            mine = [one for one in SHAPES if issubclass(one, Simple)]
-            yield f"{key}.shape = {show(name_of(part))}: not in {d}D; expected {_known(mine, d)}"
+            yield f"{key}.shape = {show(name_of(part))}: not in {d}D; expected {expected}"
         for name, vector in part.vectors().items():
             if len(vector) != d:
                 yield f"{key}.{name} = {show(vector)}: expected {_numbers(d)}"
-
-
-def _known(shapes: Any, d: int) -> str:
-    names = [found[1] for shape in shapes if d in shape.dimensions and (found := tag_of(shape))]
-    return one_of([name for name in names if name not in ENDLESS])
+        if not moves(part):
+            yield (
+                f"{key}.shape = {show(name_of(part))}: not part of a body that moves; expected "
+                f"{expected}"
+            )
 
 
 def _numbers(d: int) -> str:

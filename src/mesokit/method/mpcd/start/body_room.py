@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.geometry import primitive
-from mesokit.geometry.primitive import WIDTH
+from mesokit.geometry.primitive import PRIMITIVES, WIDTH
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.kernels.later import kernel
-from mesokit.method.mpcd.body.inertia import Solid, middle_of
+from mesokit.method.mpcd.body.inertia import Solid
 from mesokit.method.mpcd.engine.bodies.state import FOUR, load, rotated, rotated_back
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.scalar.jit import scalar
@@ -56,11 +56,6 @@ def shape_of(solid: Solid) -> Shape:
     """The parts of a body."""
     table = np.array([part.numbers for part in solid.parts])
     return Shape(np.array([part.code for part in solid.parts]), table, address(table))
-
-
-def is_ball(solid: Solid) -> bool:
-    """Whether a body is a sphere or a disk about its centre."""
-    return len(solid.parts) == 1 and solid.parts[0].kind == "ball"
 
 
 def open_lengths(case: Case) -> Floats:
@@ -136,7 +131,7 @@ def overlap(case: Case, places: Floats, turns: Floats) -> tuple[int, int] | None
         if a == b:
             near = near[near["i"] < near["j"]]
         i, j = near["i"] + rows[a].start, near["j"] + rows[b].start
-        if is_ball(solids[a]) and is_ball(solids[b]):
+        if solids[a].ball and solids[b].ball:
             bad = near["v"] < reach - TOUCH
         else:
             away = places[j] - places[i]
@@ -213,10 +208,10 @@ def deepest_in_wall(case: Case, places: Floats, turns: Floats) -> tuple[int, flo
         solid = kind.solid(d)
         look = walls_away(case, solid.radius)
         far = look(places[rows])
-        points = np.zeros((1, 3)) if is_ball(solid) else _within(solid, d)
+        points = np.zeros((1, 3)) if solid.ball else _within(solid, d)
         for i in np.flatnonzero(far < solid.radius).tolist():
             depth = solid.radius - far[i]
-            if not is_ball(solid):
+            if not solid.ball:
                 body = rows.start + i
                 depth = -look(places[body] + _turned(turns[body], points)[:, :d]).min()
             if depth > found[1]:
@@ -228,7 +223,7 @@ def _within(solid: Solid, d: int) -> Floats:
     """Places (n, 3) on the surface of a body and on smaller ones within, in its own frame."""
     shape, nothing, found = shape_of(solid), np.zeros(1), []
     for part, numbers in zip(solid.parts, shape.table, strict=True):
-        middle = middle_of(part)
+        middle = PRIMITIVES[part.code].integrals(part.numbers, d).centre
         p, samples = address(numbers), address(nothing)
         # The nearest places to those on a ball about it: on what is convex they are no farther
         # from one another than there.

@@ -74,7 +74,7 @@ def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
     row[state.INVERSE_INERTIA : state.INVERSE_INERTIA + 6] = six(inverse)
     row[state.ROOT_INERTIA : state.ROOT_INERTIA + 6] = six(root)
     row[state.RADIUS] = solid.radius
-    row[state.IS_BALL] = len(solid.parts) == 1 and solid.parts[0].kind == "ball"
+    row[state.IS_BALL] = solid.ball
     row[state.IS_SLIP] = kind.surface == "slip"
     fluid = fluid_mass_density(case) * solid.volume
     if kind.virtual == "fill" and kind.surface != "slip":
@@ -99,13 +99,8 @@ def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
         row[state.TUMBLES] = kind.swim.tumble_rate
     row[state.FIRST_PART], row[state.PARTS_END] = first_part, first_part + len(solid.parts)
     row[state.DISPLACED] = fluid
-    row[state.HALF_LENGTH] = half_length(solid.parts[0])
+    row[state.HALF_LENGTH] = kind.half_axis
     return row
-
-
-def half_length(part: Any) -> float:
-    """From the centre of a squirmer to the end of its axis."""
-    return float(part.numbers[6]) if part.kind in ("ball", "ellipsoid") else 1.0
 
 
 def six(matrix: Floats) -> Floats:
