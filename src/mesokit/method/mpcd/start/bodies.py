@@ -108,7 +108,7 @@ def _require_room(case: Case, places: Floats, turns: Floats) -> None:
     deep = deepest_in_wall(case, places, turns) if case.walls else None
     if deep is not None:
         kind, i = key(deep[0])
-        raise CaseError(f"{kind}.start: its body {i} is in a wall, {deep[1]:.3g} deep")
+        raise CaseError(f"{kind}.start: its body {i} is in a wall, about {deep[1]:.2g} deep")
 
 
 def first_velocities(case: Case, places: Floats, turns: Floats) -> tuple[Floats, Floats]:
