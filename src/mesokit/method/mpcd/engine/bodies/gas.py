@@ -139,7 +139,7 @@ def image_up(box, x, zero, copy):
     return x, with_shear(zero, copy * box.speed)
 
 
-@scalar
+@seldom
 def depth_at(bodies, i, s):
     """Distance of a place at an arm from the surface of body i, negative inside."""
     if of_kind(bodies, i, IS_BALL) > 0.5:
@@ -214,7 +214,7 @@ def take_noise(worker, physics, bodies, i):
     store(bodies.rows, i, CHANGE + 3, dw)
 
 
-@scalar
+@seldom
 def move_gas(thread, now, physics, fluid, bodies, n):
     """Velocity of a particle of the gas, and what it adds to the sums of its cell."""
     gas, i, zero = bodies.gas[thread], np.int64(bodies.gas_body[thread, n]), physics.zero

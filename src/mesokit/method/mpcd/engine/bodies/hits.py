@@ -185,7 +185,7 @@ def begin_again(bodies, thread, j):
 # --- the next hit ---------------------------------------------------------------------------------
 
 
-@scalar
+@seldom
 def find_hit(worker, now, physics, fluid, bodies, j, n, trial):
     """Fly a particle to its next hit on a body, or to the end of the timestep; 1 if it hits.
 
@@ -224,14 +224,14 @@ def find_hit(worker, now, physics, fluid, bodies, j, n, trial):
     return 1
 
 
-@scalar
+@seldom
 def wall_velocity(bodies, i, s, normal, speed):
     """Velocity of the surface of body i at an arm: rigid motion, image and squirming."""
     v, spin = load(bodies.rows, i, VELOCITY, s), load(bodies.rows, i, SPIN, THREE)
     return added(rigid_velocity(v, spin, s, speed), squirming(bodies, i, s, normal))
 
 
-@scalar
+@seldom
 def add_hit(bodies, sums, i, m, s, normal, g, physics):
     """Add m B^T B and m B^T g of a hit at an arm s with a relative velocity g."""
     by_mass, by_momentum = physics_scales(bodies, physics)
@@ -518,7 +518,7 @@ def normal_at(bodies, i, s, time):
 # --- the reflection -------------------------------------------------------------------------------
 
 
-@scalar
+@seldom
 def solve_body(worker, physics, bodies, i, scales, trial):
     """Solve for the change of the velocity of body i; the first of all threads' sums has the total.
 
@@ -541,7 +541,7 @@ def solve_body(worker, physics, bodies, i, scales, trial):
         end_turn(bodies, i, physics.timestep)
 
 
-@scalar
+@seldom
 def reflect(worker, physics, fluid, bodies, j):
     """Velocity of a particle after its hit; the body takes the opposite of its impulse."""
     thread, values = worker.thread, bodies.values[worker.thread]
@@ -569,7 +569,7 @@ def reflect(worker, physics, fluid, bodies, j):
     bodies.numbers[thread, j, LEFT] = NO_BODY if rise > 0.0 else i
 
 
-@scalar
+@seldom
 def take_impulses(worker, physics, bodies, i):
     """Give body i the impulses that particles gave it, in whole numbers, and forget these."""
     d, unit = len(physics.zero), 1.0 / momentum_scale(physics)
@@ -584,7 +584,7 @@ def take_impulses(worker, physics, bodies, i):
             bodies.taken[t, i, k] = 0
 
 
-@scalar
+@seldom
 def give_impulse(bodies, i, total, d, unit, per_time):
     """Change velocity and angular velocity of body i by an impulse in whole numbers."""
     rows, kind = bodies.rows, bodies.kind[i]
@@ -605,7 +605,7 @@ def give_impulse(bodies, i, total, d, unit, per_time):
 # --- the end of the flight ------------------------------------------------------------------------
 
 
-@scalar
+@seldom
 def finish_body(bodies, i, now, physics):
     """Place and orientation of body i at the end of the step, and its image in the box."""
     rows, zero, time = bodies.rows, physics.zero, physics.timestep

@@ -86,7 +86,7 @@ def begin_step(worker, now, physics, bodies):
     barrier(worker)
 
 
-@scalar
+@seldom
 def kick_body(bodies, physics, box, i, time):
     """Change of the velocities of body i by the forces where it is."""
     rows, kind, zero = bodies.rows, bodies.kind[i], physics.zero
@@ -101,7 +101,7 @@ def kick_body(bodies, physics, box, i, time):
     store(rows, i, SPIN, added(load(rows, i, SPIN, THREE), change))
 
 
-@scalar
+@seldom
 def drift_body(bodies, physics, i, time):
     """Straight path and free turn of body i."""
     rows, zero = bodies.rows, physics.zero
@@ -169,7 +169,7 @@ def angle_over_tangent(t):
     return 2.0 * u * series
 
 
-@scalar
+@seldom
 def begin_motion(bodies, physics, i):
     """The one motion that the fluid sees, from the place before to that after all sub-steps."""
     rows, zero, time = bodies.rows, physics.zero, physics.timestep

@@ -179,7 +179,7 @@ def list_around(bodies, box, i, mine, zero):
                             clear_cubes(bodies, box, kind, q, cell, away)
 
 
-@scalar
+@seldom
 def distance_of(bodies, kind, q, s):
     """Distance of a place at an arm from the surface of a body of a kind, negative inside."""
     if bodies.kinds[kind, IS_BALL] > 0.5:
@@ -188,7 +188,7 @@ def distance_of(bodies, kind, q, s):
     return c
 
 
-@scalar
+@seldom
 def clear_cubes(bodies, box, kind, q, cell, s):
     """Lower what is clear around the halves of a cell whose middle is at an arm."""
     d = len(s)
@@ -214,7 +214,7 @@ def half_of(bodies, cell, cube, d):
     return place
 
 
-@scalar
+@seldom
 def put_on_list(bodies, cell, i):
     """Add body i to the list of a cell, once."""
     n = bodies.near_count[cell]

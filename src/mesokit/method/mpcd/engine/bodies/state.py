@@ -185,7 +185,7 @@ def _turned(w, u, a):
     )
 
 
-@scalar
+@seldom
 def after_turn(q, spin, time):
     """The orientation after a uniform turn; a unit quaternion again."""
     fast = np.sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2])
@@ -234,13 +234,13 @@ def apply_symmetric(kinds, kind, column, a):
     )
 
 
-@scalar
+@seldom
 def turn_by(bodies, i, q, column, a):
     """A symmetric matrix of the kind of body i, at an orientation, times a vector of three."""
     return rotated(q, apply_symmetric(bodies.kinds, bodies.kind[i], column, rotated_back(q, a)))
 
 
-@scalar
+@seldom
 def spin_of(bodies, i, q, angular_momentum):
     """Angular velocity at an orientation: about the hinge alone where there is one."""
     kind = bodies.kind[i]

@@ -11,7 +11,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     rotated,
 )
 from mesokit.scalar.intrinsics import with_item
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 
@@ -22,7 +22,7 @@ def heading(bodies, i, pattern):
     return rotated(load(bodies.rows, i, TURN, FOUR), axis)
 
 
-@scalar
+@seldom
 def squirming(bodies, i, s, normal):
     """-(B1 + B2 z) (e - (e n) n), with the axis e and the height z along it, from -1 to 1.
 

@@ -18,11 +18,11 @@ from mesokit.method.mpcd.engine.cpu.strips.rows import (
 )
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
 from mesokit.method.mpcd.engine.where import where
-from mesokit.scalar.jit import optional, scalar
+from mesokit.scalar.jit import optional, scalar, seldom
 from mesokit.scalar.vector import added_scaled
 
 
-@scalar
+@seldom
 def put_one(worker, now, physics, fluid, lane, start, r, v):
     """Do the work of `slide_strip`, `bin_strip` and `add_strip` for the particle in a lane, which
     has flown from `start` to r."""
