@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
-from mesokit.method.mpcd.body.protocol import named
 from mesokit.method.mpcd.engine.bodies.allocate import masses_of
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.scalar.random import INITIAL_BODIES
@@ -88,9 +87,7 @@ def _draw(
             away = places[others] - x
             away -= finite * np.rint(away / finite)
             apart = (away**2).sum(axis=1) >= (radii[others] + radii[i]) ** 2
-            if apart.all() and (
-                solids is None or float(solids.distance(x[None])[0]) >= radii[i]
-            ):
+            if apart.all() and (solids is None or float(solids.distance(x[None])[0]) >= radii[i]):
                 break
         else:
             raise CaseError(

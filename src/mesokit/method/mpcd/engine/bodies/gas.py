@@ -46,9 +46,9 @@ from mesokit.method.mpcd.engine.bodies.state import (
     TURN,
     load,
     of_kind,
+    rotated_back,
     store,
     swept,
-    rotated_back,
     with_shear,
 )
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell

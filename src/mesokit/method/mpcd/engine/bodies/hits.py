@@ -80,11 +80,11 @@ from mesokit.method.mpcd.engine.bodies.state import (
     load,
     of_kind,
     place_at,
-    spin_of,
-    store,
     rigid_velocity,
     rotated,
     rotated_back,
+    spin_of,
+    store,
     with_shear,
 )
 from mesokit.method.mpcd.engine.bodies.swim import squirming

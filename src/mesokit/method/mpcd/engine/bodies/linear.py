@@ -6,7 +6,6 @@ counted in levers (see `MovingBodies`), so that all numbers have one scale. Matr
 
 import math
 
-
 from mesokit.method.mpcd.engine.bodies.state import (
     END_TURN,
     FOUR,

@@ -159,7 +159,9 @@ class BodyReadings:
     def inside(self, places: Floats) -> NDArray[np.bool_]:
         """Which of places (n, d) are in a body."""
         found, zero = np.zeros(len(places), bool), self.memory.physics.zero
-        mark_inside(ALONE, self.memory.box, self.state_of, zero, np.ascontiguousarray(places), found)
+        mark_inside(
+            ALONE, self.memory.box, self.state_of, zero, np.ascontiguousarray(places), found
+        )
         return found
 
     def state(self) -> dict[str, NDArray[Any]]:
@@ -205,4 +207,3 @@ def mark_inside(worker, box, bodies, zero, places, found):
             cell = np.int64(EVERY_BODY)
         depth, _ = deepest(box, bodies, cell, r)
         found[n] = depth < 0.0
-
