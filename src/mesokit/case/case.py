@@ -169,7 +169,8 @@ class Case(Shown):
         for field, key in keys.items():
             if field in data:
                 raise CaseError(f"{field}: unknown key; did you mean [[{key}]]?")
-        for key in (*keys.values(), "observe"):
+        lists = [f for f in made._fields() if made.__dataclass_fields__[f].default.default == ()]
+        for key in (keys.get(field, field) for field in lists):
             if isinstance(data.get(key), dict):
                 raise CaseError(f"{key}: expected [[{key}]], in double brackets")
         fields = {key: field for field, key in keys.items()}

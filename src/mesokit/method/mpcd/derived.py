@@ -11,6 +11,8 @@ from mesokit.case.case import Case
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.trajectory import stored_bytes
 from mesokit.geometry.shape.plates import Plates
+from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.body.protocol import named
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.expected.heating import heating
 from mesokit.method.mpcd.expected.molecules import longest_relaxation
@@ -141,6 +143,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     rows: list[Row] = [("particles", f"{numbers.particles:,}".replace(",", " "), "")]
     if case.solutes is not None:
         rows.append(("beads of solutes", f"{case.solutes.beads:,}".replace(",", " "), ""))
+    rows += body_rows(case)
     molecule = case.fluid.molecule
     if molecule is not None:
         number_of = f"{numbers.particles // molecule.length:,}".replace(",", " ")
@@ -166,6 +169,17 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     if numbers.trajectory:
         rows.append(("trajectory", size_text(numbers.trajectory), "estimate"))
     return Summary(tuple(rows), numbers.warnings, numbers.seconds, numbers.record(), numbers.memory)
+
+
+def body_rows(case: Case) -> list[Row]:
+    """A row for each kind of bodies: how many, how large, how heavy, and how much they fill."""
+    d, fluid, rows = case.box.dimension, case.fluid, []
+    for name, kind in named(case.bodies):
+        solid, mass = kind.solid(d), kind.mass_in(d, fluid.density * fluid.mass)
+        share = kind.number * solid.volume / free_volume(case)
+        radius = f"radius {solid.radius:.4g} a, mass {mass:.4g}, volume fraction {share:.3g}"
+        rows.append((f"bodies {name}", f"{kind.number:,}".replace(",", " "), radius))
+    return rows
 
 
 def compiling_memory(case: Case) -> int:

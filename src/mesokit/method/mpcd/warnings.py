@@ -9,8 +9,9 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.box import AXES
 from mesokit.case.case import Case
-from mesokit.case.component import name_of
+from mesokit.case.component import name_of, one_of
 from mesokit.case.describe.digits import two_digits
+from mesokit.case.registry import family_of
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import slit_of, solids_of
@@ -29,6 +30,8 @@ from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solids
 SLIPPERY = 0.03  # slip length in cells
 RADIANS = 0.01  # an angle of no less may have been meant in radians
+THIN_BODY = 2.0  # cells
+LONG_STRIDE = 0.25  # radii that a body flies in a timestep
 TURBULENT = 2000  # Reynolds number of a pipe, of the mean velocity and the diameter
 SHOCK = 2.0  # speeds of sound at which images may move; those of 8 do not follow theory
 STRONG = 0.3  # thermal velocities that a force may add in a timestep
@@ -38,6 +41,7 @@ def cautions(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     """Warnings before a run; `across` is the number of the axis across the flow."""
     yield from _method_warnings(case, numbers)
     yield from _solid_warnings(case)
+    yield from _body_warnings(case, numbers)
     yield from _flow_warnings(case, numbers, across)
     yield from run_warnings(case, numbers.memory, numbers.trajectory)
 
@@ -152,6 +156,85 @@ def _solid_warnings(case: Case) -> Iterator[str]:
 
 def _place(coordinates: Sequence[float]) -> str:
     return "(" + ", ".join(f"{x:.1f}" for x in coordinates) + ")"
+
+
+def _body_warnings(case: Case, numbers: Derived) -> Iterator[str]:
+    fluid, d = case.fluid, case.box.dimension
+    density = fluid.density * fluid.mass
+    for i, kind in enumerate(case.bodies, start=1):
+        key, solid, mass = f"bodies[#{i}]", kind.solid(d), kind.mass_in(d, density)
+        if solid.overlaps:
+            yield f"{key}.parts: some overlap, so its volume and inertia are sampled on a grid"
+        if _above(THIN_BODY, solid.thinnest, 3):
+            yield (
+                f"{key}: it is {solid.thinnest:.3g} cells thick; below {THIN_BODY:g} the flow "
+                f"around it is not resolved: give all lengths {THIN_BODY / solid.thinnest:.2g} "
+                "times as many cells"
+            )
+        own, filled = mass / solid.volume, kind.virtual == "fill" and kind.surface != "slip"
+        if filled and _above(density, own, 4):
+            yield (
+                f"{key}: its density {own:.4g} is below that of the fluid, {density:.4g}: its "
+                "virtual particles are thinned in proportion"
+            )
+        stride = fluid.timestep * math.sqrt(fluid.kT / mass) / (0.5 * solid.thinnest)
+        if _above(stride, LONG_STRIDE):
+            yield (
+                f"fluid.timestep = {fluid.timestep:g}: in one, {key} moves by {stride:.2g} of its "
+                f"radius; above {LONG_STRIDE:g} it is too hot: a shorter timestep or a larger mass"
+            )
+    yield from _images_of_bodies(case)
+    yield from _turning_bodies(case, numbers)
+    yield from _pushed_bodies(case)
+
+
+def _images_of_bodies(case: Case) -> Iterator[str]:
+    """Pairs of bodies that two images of one another could touch at once."""
+    d, closed = case.box.dimension, setting.closed_axes(case)
+    shortest = min((n for k, n in enumerate(case.box.size) if k not in closed), default=math.inf)
+    many = [kind for kind in case.bodies for _ in range(min(kind.number, 2))]
+    reaches = [kind.solid(d).radius + 0.5 * kind.interaction.range for kind in many]
+    reach = sum(sorted(reaches)[-2:]) if len(many) > 1 else 0.0
+    if _above(reach, 0.5 * shortest, 4):
+        yield (
+            f"bodies: two of them reach {reach:.4g} from centre to centre, more than half of the "
+            f"box of {shortest:g}: of the images of another, only the nearest repels"
+        )
+
+
+def _turning_bodies(case: Case, numbers: Derived) -> Iterator[str]:
+    """Bodies that turn in a fluid whose stress has a torque of its own."""
+    rule, d = case.fluid.collision, case.box.dimension
+    turning = any("orientation" not in kind.fixed for kind in case.bodies)
+    known = {name: part for name, part in family_of(rule).parts.items() if part.acts}
+    better = [name for name, part in known.items() if "angular momentum" in part.conserves]
+    if not (turning and rule.acts) or "angular momentum" in rule.conserves:
+        return
+    friction = "a lower rotational friction"
+    if numbers.transport is not None:
+        share = numbers.transport.viscosity_collisional / numbers.transport.viscosity
+        kept, one = 1.0 - share / (2 if d == 2 else 3), "disk" if d == 2 else "sphere"
+        friction = f"{kept:.2g} of the rotational friction of a {one}"
+    yield (
+        f"fluid.collision.rule = {name_of(rule)!r}: it does not conserve angular momentum: bodies "
+        f"have {friction}, and turn too fast in a shear flow; use {one_of(better)}"
+    )
+
+
+def _pushed_bodies(case: Case) -> Iterator[str]:
+    """A net force on bodies that nothing takes."""
+    total = np.zeros(case.box.dimension)
+    for kind in case.bodies:
+        if kind.force is None or kind.frame == "body" or kind.counter_force or kind.trap:
+            continue
+        free = [axis not in kind.fixed for axis in case.box.axes]
+        total += kind.number * np.array(kind.force) * free
+    along = [axis for axis, force in zip(case.box.axes, total, strict=True) if force]
+    if along and not case.walls:
+        yield (
+            f"bodies: together they are pushed along {' and '.join(along)}, and nothing holds the "
+            "fluid: the whole box speeds up for ever; use walls, or counter_force = true"
+        )
 
 
 def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:

@@ -12,7 +12,8 @@ class DiskBody(Body):
     """A disk (2D)."""
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)
-    squirms = True
+    squirms: ClassVar[bool] = True
+    tumbles: ClassVar[bool] = True
     shape: Literal["disk"] = tag("disk")
     radius: float = param(doc="its radius", unit="a", gt=0)
 

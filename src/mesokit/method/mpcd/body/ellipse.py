@@ -16,7 +16,7 @@ class EllipseBody(Body):
     """An ellipse (2D), with its axes along those of its own frame."""
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)
-    squirms = True
+    squirms: ClassVar[bool] = True
     shape: Literal["ellipse"] = tag("ellipse")
     size: Many[float] = param(doc="its axes", unit="a", min_length=2, max_length=2)
 

@@ -47,7 +47,7 @@ def solid_of(region: Region, planar: bool) -> Solid:
     own = [PRIMITIVES[part.code].integrals(part.numbers, d) for part in parts]
     overlaps = len(parts) > 1 and bool((_inside(parts, _grid(parts, own, d)[0]) > 1).any())
     volume, centre, second = _sampled(parts, own, d) if overlaps else _joined(own)
-    about = tuple(part for (part,) in moved(region, -centre))
+    about = tuple(part for (part,) in moved(region, (-centre).tolist()))
     extents = [PRIMITIVES[part.code].extent(part.numbers) for part in parts]
     widths = [PRIMITIVES[part.code].width(part.numbers) for part in parts]
     away = [float(np.hypot.reduce(one.centre - centre)) for one in own]

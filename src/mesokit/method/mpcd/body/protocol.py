@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Direction = Literal["x", "y", "z", "orientation"]
+RANDOM, LATTICE, GIVEN = "random", "lattice", "given"
 
 
 @component
@@ -30,7 +31,7 @@ class GapPotential:
     It is the potential of Weeks, Chandler and Andersen (1971) of the gap: it diverges at contact
     and ends at `range`."""
 
-    depth: float = param(1.0, doc="energy scale", unit="kT", gt=0, le=1e6)
+    depth: float = param(1.0, doc="energy scale; 0 for no repulsion", unit="kT", ge=0, le=1e6)
     range: float = param(0.5, doc="gap at which it ends", unit="a", ge=0.25, le=10)
 
 
@@ -54,6 +55,9 @@ class BodyTrap:
     def __post_init__(self) -> None:
         if self.k == 0 and self.angular == 0:
             raise ValueError("k: missing; a trap needs k, angular or both")
+        for key, needed in (("centre", "k"), ("direction", "angular")):
+            if getattr(self, key) is not None and getattr(self, needed) == 0:
+                raise ValueError(f"{key} = {show(getattr(self, key))}: needs {needed}, a stiffness")
         if self.direction is not None and not any(self.direction):
             raise ValueError(f"direction = {show(self.direction)}: expected a vector other than 0")
 
@@ -98,7 +102,7 @@ class BodyStart:
     )
 
     def __post_init__(self) -> None:
-        if (self.positions is not None) != (self.rule == "given"):
+        if (self.positions is not None) != (self.rule == GIVEN):
             if self.positions is None:
                 raise ValueError("positions: missing; rule = 'given' needs them")
             raise ValueError("positions: only with rule = 'given'")
@@ -112,8 +116,9 @@ class BodyStart:
 class Body(ABC):
     """A kind of rigid bodies that move in the fluid."""
 
-    dimensions = (2, 3)
-    squirms = False  # whether its surface may have a `swim`
+    dimensions: ClassVar[tuple[int, ...]] = (2, 3)
+    squirms: ClassVar[bool] = False  # whether its surface may have a `swim`
+    tumbles: ClassVar[bool] = False  # whether that may turn it at once, for which it must be round
 
     number: int = option(default=1, doc="bodies of this kind", kw_only=True, ge=1, le=2**24)
     name: str | None = option(
@@ -170,9 +175,9 @@ class Body(ABC):
         default=None, doc="axis of the box about which alone it turns", kw_only=True
     )
     trap: BodyTrap | None = option(default=None, doc="springs that hold it", kw_only=True)
-    interaction: GapPotential | None = option(
+    interaction: GapPotential = option(
         default=GapPotential(),
-        doc="repulsion of bodies and walls by the gap; null for none",
+        doc="repulsion of bodies and walls by the gap; depth = 0 for none",
         kw_only=True,
     )
     swim: Squirming | None = option(

@@ -12,7 +12,8 @@ class SphereBody(Body):
     """A sphere (3D)."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
-    squirms = True
+    squirms: ClassVar[bool] = True
+    tumbles: ClassVar[bool] = True
     shape: Literal["sphere"] = tag("sphere")
     radius: float = param(doc="its radius", unit="a", gt=0)
 

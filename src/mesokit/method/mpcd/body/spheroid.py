@@ -12,7 +12,7 @@ class SpheroidBody(Body):
     """An ellipsoid of revolution (3D) about its axis x: prolate or oblate."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
-    squirms = True
+    squirms: ClassVar[bool] = True
     shape: Literal["spheroid"] = tag("spheroid")
     half_length: float = param(doc="from its centre to an end of the axis", unit="a", gt=0)
     radius: float = param(doc="its largest radius across the axis", unit="a", gt=0)

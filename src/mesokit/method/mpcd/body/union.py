@@ -2,7 +2,7 @@
 
 from typing import ClassVar, Literal
 
-from mesokit.case.component import component, name_of, param, tag
+from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
 from mesokit.geometry.primitive import MOVABLE
@@ -27,16 +27,17 @@ class UnionBody(Body):
         for i, part in enumerate(self.parts, start=1):
             if part.fluid == "inside":
                 raise ValueError(f"parts[#{i}].fluid = 'inside': expected a solid")
-        for i, part in enumerate(self.parts, start=1):
-            terms = self._body(part)
-            if not all(len(term) == 1 and MOVABLE[term[0].code] for term in terms):
-                raise ValueError(
-                    f"parts[#{i}].shape = {name_of(part)!r}: not part of a body that moves"
-                )
-
-    def _body(self, part: Simple) -> Region:
-        d = 2 if part.dimensions == (2,) else 3
-        return part.body(Room((1,) * d, (False,) * d))
 
     def region(self) -> Region:
-        return region.union(self._body(part) for part in self.parts)
+        return region.union(region_of(part) for part in self.parts)
+
+
+def region_of(part: Simple) -> Region:
+    """A shape as part of a body."""
+    d = 2 if part.dimensions == (2,) else 3
+    return part.body(Room((1,) * d, (False,) * d))
+
+
+def moves(part: Simple) -> bool:
+    """Whether a shape can be part of a body: it is convex, and has an end."""
+    return all(len(term) == 1 and MOVABLE[term[0].code] for term in region_of(part))

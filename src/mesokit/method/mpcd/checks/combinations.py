@@ -15,6 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.walls import room, surfaces
+from mesokit.method.mpcd.checks.bodies import bodies
 from mesokit.method.mpcd.checks.solutes import solutes
 from mesokit.method.mpcd.checks.walls import moving_surfaces, walls
 from mesokit.method.mpcd.collision.protocol import coefficients, collide, contribute, freedom
@@ -317,6 +318,7 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     walls,
     lambda case: room(case, "fluid"),
     moving_surfaces,
+    bodies,
     size,
     check_mean_free_path,
     collision,

@@ -14,6 +14,7 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.io.snapshot_file import read_snapshot
 from mesokit.method.mpcd.solute.free import FreeMolecule
 from mesokit.method.mpcd.start.arrays import read_arrays
+from mesokit.method.mpcd.start.bodies import first_places
 from mesokit.method.mpcd.start.snapshot import fitted, fitted_beads
 from mesokit.processes.alone import Alone
 
@@ -45,8 +46,8 @@ def first_state(
 
     All ranks (`here`) call it at the same time; an `OfFirst` is on rank 0 for all.
 
-    Raises CaseError for arrays that do not fit the case, and for files and runs that cannot be
-    read.
+    Raises CaseError for arrays that do not fit the case, for bodies that overlap or find no room,
+    and for files and runs that cannot be read.
     """
     fluid = read_arrays(
         case,
@@ -57,6 +58,8 @@ def first_state(
         run=_last_state,
         file=lambda case, path: fitted(case, read_snapshot(path, case.fluid.start.scale)),
     )
+    if case.bodies:
+        first_places(case)
     if case.solutes is None:
         for name, array in (("beads", beads), ("bead_velocities", bead_velocities)):
             if array is not None:

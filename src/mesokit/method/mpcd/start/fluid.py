@@ -188,7 +188,7 @@ def _begin_bodies(engine: Any, fluid_is_drawn: bool) -> Floats:
     """Give the bodies their first state; the drift (d,) to take off the fluid, so that the whole is
     at rest."""
     case, bodies = engine.numbers.case, engine.bodies
-    places, turns = first_places(case, periods(engine.numbers))
+    places, turns = first_places(case)
     v, spins = first_velocities(case, places, turns)
     drift = np.zeros(engine.numbers.dimension)
     given = any(kind.start.velocities is not None for kind in case.bodies)

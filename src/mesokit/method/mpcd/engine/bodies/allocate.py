@@ -92,7 +92,7 @@ def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
         row[state.ANGULAR_SPRING] = kind.trap.angular * kT
         towards = kind.trap.direction or (1.0, 0.0, 0.0)[:d]
         row[state.TOWARDS : state.TOWARDS + d] = np.array(towards) / math.hypot(*towards)
-    if kind.interaction is not None:
+    if kind.interaction.depth:
         row[state.DEPTH], row[state.RANGE] = kind.interaction.depth * kT, kind.interaction.range
     if isinstance(kind.swim, Squirming):
         row[state.B1], row[state.B2] = kind.swim.B1, kind.swim.B2
@@ -112,10 +112,9 @@ def needed_substeps(case: Case) -> int:
     """Sub-steps in which the stiffest spring or gap turns by PHASE at most."""
     fast, kT = 0.0, case.fluid.kT
     for kind, mass in zip(case.bodies, masses_of(case), strict=True):
-        if kind.interaction is not None:
-            # the curvature where two bodies have one kT of the potential
-            s = kind.interaction.range / 2 ** (1 / 6)
-            fast = max(fast, 100.0 * kind.interaction.depth * kT / s**2 * 2.0 / mass)
+        # the curvature where two bodies have one kT of the potential
+        s = kind.interaction.range / 2 ** (1 / 6)
+        fast = max(fast, 100.0 * kind.interaction.depth * kT / s**2 * 2.0 / mass)
         if kind.trap is not None:
             fast = max(fast, kind.trap.k * kT / mass)
             solid = kind.solid(case.box.dimension)
@@ -201,9 +200,6 @@ def wall_of_gaps(numbers: Numbers, case: Case) -> Any:
     if numbers.slit is not None:
         return numbers.slit.kernel(case.box.size)
     d = numbers.dimension
-    reach = max(
-        kind.solid(d).radius + (kind.interaction.range if kind.interaction else 0.0)
-        for kind in case.bodies
-    )
+    reach = max(kind.solid(d).radius + kind.interaction.range for kind in case.bodies)
     assert numbers.solids is not None
     return numbers.solids.reaching(reach)

@@ -1,0 +1,210 @@
+"""Bodies that are fine alone and wrong with the rest of a case: see `combinations`."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from mesokit.case.case import Case
+from mesokit.case.component import name_of, one_of, show, tag_of
+from mesokit.geometry.shape_protocol import Simple, closed_axes
+from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.body.protocol import Body, named
+from mesokit.method.mpcd.body.union import UnionBody, moves
+
+MOST_BODIES = 2**24
+MOST_FILLED = 0.9  # of the volume that walls leave
+LEAST_MASS = 10.0  # particles of the fluid
+ROOM = 4.0  # cells from a body to its own image
+SIZES = ("radius", "half_length", "length", "size", "parts")  # keys that say how large one is
+
+
+def bodies(case: Case) -> Iterator[str]:
+    """Bodies that fit the box, and nothing that they do not do yet."""
+    if not case.bodies:
+        return
+    yield from _not_yet(case)
+    labels: dict[str, int] = {}
+    for i, (label, kind) in enumerate(named(case.bodies), start=1):
+        key = f"bodies[#{i}]"
+        yield from (f"{key}.{problem}" for problem in _shape(case, kind))
+        yield from (f"{key}.{problem}" for problem in _vectors(case, kind))
+        yield from (f"{key}.{problem}" for problem in _rows(case, kind))
+        yield from (f"{key}.{problem}" for problem in _size(case, kind))
+        yield from (f"{key}.{problem}" for problem in _counter_force(case, kind))
+        if kind.swim is not None and kind.swim.tumble_rate and not kind.tumbles:
+            yield (
+                f"{key}.swim.tumble_rate = {show(kind.swim.tumble_rate)}: only of a sphere or a "
+                "disk; others have no room to turn at once"
+            )
+        if label in labels:
+            first = f"bodies[#{labels[label]}]"
+            yield f"{key}.name: {show(label)} is also the name of {first}; rename one"
+        labels[label] = i
+    total = sum(kind.number for kind in case.bodies)
+    if total > MOST_BODIES:
+        yield f"bodies: {total} in all; expected at most {MOST_BODIES}"
+    d, room = case.box.dimension, free_volume(case)
+    filled = sum(kind.number * kind.solid(d).volume for kind in case.bodies)
+    if filled > MOST_FILLED * room:
+        yield (
+            f"bodies: they fill {filled:.4g} of {room:.4g} cells; expected at most "
+            f"{MOST_FILLED:.0%}: fewer or smaller bodies"
+        )
+
+
+def _not_yet(case: Case) -> Iterator[str]:
+    """What bodies cannot be together with."""
+    fluid, rule = case.fluid, case.fluid.collision
+    if case.box.open:
+        yield f"box.open = {show(list(case.box.open))}: not with bodies; leave one of both out"
+    if fluid.molecule is not None:
+        yield "fluid.molecule: not with bodies yet; expected a fluid of single particles"
+    if fluid.mixed:
+        yield "fluid.species: of different mass, not with bodies yet; expected one mass"
+    if case.solutes is not None:
+        yield "solutes: not with bodies yet; leave one of both out"
+    if rule.gradient_of is not None:
+        yield f"fluid.collision.rule = {show(name_of(rule))}: not with bodies yet; use 'srd'"
+    for i, observable in enumerate(case.observe, start=1):
+        if "stress" in observable.measures:
+            name = show(name_of(observable))
+            yield f"observe[#{i}].quantity = {name}: not with bodies yet, which carry stress too"
+
+
+def _shape(case: Case, kind: Body) -> Iterator[str]:
+    """A shape of this dimension, and its parts likewise."""
+    from mesokit.geometry.shape import SHAPES
+    from mesokit.method.mpcd.body import BODIES
+
+    d = case.box.dimension
+    usable = [found[1] for one in BODIES if d in one.dimensions and (found := tag_of(one))]
+    if d not in kind.dimensions:
+        yield f"shape = {show(name_of(kind))}: not in {d}D; expected {one_of(usable)}"
+    simple = [found[1] for one in SHAPES if issubclass(one, Simple) and (found := tag_of(one))]
+    expected = one_of([name for name in usable if name in simple])
+    for i, part in enumerate(kind.parts if isinstance(kind, UnionBody) else (), start=1):
+        key = f"parts[#{i}]"
+        if d not in part.dimensions:
+            yield f"{key}.shape = {show(name_of(part))}: not in {d}D; expected {expected}"
+        for name, vector in part.vectors().items():
+            if len(vector) != d:
+                yield f"{key}.{name} = {show(vector)}: expected {_numbers(d)}"
+        if not moves(part):
+            yield (
+                f"{key}.shape = {show(name_of(part))}: not part of a body that moves; expected "
+                f"{expected}"
+            )
+
+
+def _numbers(d: int) -> str:
+    return f"{d} numbers, one for each axis of the {d}D box"
+
+
+def _vectors(case: Case, kind: Body) -> Iterator[str]:
+    """One number for each axis; in 2D all turning is about z."""
+    d, trap = case.box.dimension, kind.trap
+    given: list[tuple[str, Any]] = [("force", kind.force)]
+    if trap is not None:
+        given += [("trap.centre", trap.centre), ("trap.direction", trap.direction)]
+    for key, vector in given:
+        if vector is not None and len(vector) != d:
+            yield f"{key} = {show(vector)}: expected {_numbers(d)}"
+    if d == 2 and isinstance(kind.torque, tuple):
+        yield f"torque = {show(kind.torque)}: expected one number in 2D, about z"
+    elif d == 3 and not (kind.torque is None or _is_vector(kind.torque)):
+        yield f"torque = {show(kind.torque)}: expected 3 numbers in 3D"
+    if d == 2 and "z" in kind.fixed:
+        yield f"fixed = {show(kind.fixed)}: a 2D box has only 'x' and 'y'"
+    if kind.hinge is not None and d == 2:
+        yield f"hinge = {show(kind.hinge)}: only in 3D; in 2D all bodies turn about z alone"
+    elif kind.hinge is not None and len(kind.hinge) != 3:
+        yield f"hinge = {show(kind.hinge)}: expected {_numbers(d)}"
+    if trap is None or trap.centre is None:
+        return
+    for axis, place, length in zip(case.box.axes, trap.centre, case.box.size, strict=True):
+        if not 0 <= place <= length:
+            yield (
+                f"trap.centre = {show(trap.centre)}: outside the box along {axis}; expected 0 to "
+                f"{length:g}"
+            )
+
+
+def _is_vector(given: Any) -> bool:
+    return isinstance(given, tuple) and len(given) == 3
+
+
+def _rows(case: Case, kind: Body) -> Iterator[str]:
+    """A row for each body in what is given of its start, and places in the box."""
+    d, given = case.box.dimension, kind.start
+    angle = "1 number, its angle" if d == 2 else "4 numbers, a quaternion"
+    for name, width, what in (
+        ("positions", d, f"{d} numbers"),
+        ("orientations", 1 if d == 2 else 4, angle),
+        ("velocities", d, f"{d} numbers"),
+    ):
+        rows = getattr(given, name)
+        if rows is None:
+            continue
+        if len(rows) != kind.number:
+            yield (
+                f"start.{name}: {len(rows)} row{'s' * (len(rows) != 1)}; expected {kind.number}, "
+                "one for each body (number)"
+            )
+        for i, row in enumerate(rows, start=1):
+            if len(row) != width:
+                yield f"start.{name}[#{i}] = {show(row)}: expected {what}"
+    for i, row in enumerate(given.positions or (), start=1):
+        for axis, x, length in zip(case.box.axes, row, case.box.size, strict=True):
+            if not 0 <= x <= length:
+                yield (
+                    f"start.positions[#{i}] = {show(row)}: outside the box along {axis}; expected "
+                    f"0 to {length:g}"
+                )
+
+
+def _size(case: Case, kind: Body) -> Iterator[str]:
+    """Room between a body and its own images; a mass that the fluid can push."""
+    d, fluid = case.box.dimension, case.fluid
+    solid, closed = kind.solid(d), closed_axes(case.walls)
+    said = _said(kind, solid.radius)
+    for axis, length in zip(case.box.axes, case.box.size, strict=True):
+        if axis not in closed and 2.0 * solid.radius + ROOM > length:
+            yield (
+                f"{said}: its images may meet, for it is {2.0 * solid.radius:.4g} long; expected "
+                f"at most {length - ROOM:g} in a box of {length:g} along {axis}"
+            )
+    mass = kind.mass_in(d, fluid.density * fluid.mass)
+    if mass < LEAST_MASS * fluid.mass:
+        if kind.mass is not None:
+            said = f"mass = {show(kind.mass)}"
+        elif kind.density is not None:
+            said = f"density = {show(kind.density)}"
+        yield (
+            f"{said}: a mass of {mass:.3g}; expected at least {LEAST_MASS * fluid.mass:g}, that of "
+            f"{LEAST_MASS:g} particles of the fluid"
+        )
+
+
+def _said(kind: Body, radius: float) -> str:
+    """What makes a body as large as it is: key and value."""
+    for key in SIZES:
+        value = getattr(kind, key, None)
+        if value is not None and (key != "radius" or math.isclose(value, radius)):
+            return key if key == "parts" else f"{key} = {show(value)}"
+    return f"shape = {show(name_of(kind))}"
+
+
+def _counter_force(case: Case, kind: Body) -> Iterator[str]:
+    """A uniform acceleration of everything that balances a constant force."""
+    if not kind.counter_force:
+        return
+    key = "counter_force = true"
+    if kind.force is None:
+        yield f"{key}: needs a force that it balances"
+    if kind.frame == "body":
+        yield f"{key}: not with frame = 'body', whose force turns with the body; use 'box'"
+    if case.walls:
+        yield f"{key}: not with walls, which take the force; leave it out"
+    if case.fluid.force.uniform(case.box.dimension) is None:
+        rule = show(name_of(case.fluid.force))
+        yield f"{key}: not with fluid.force.rule = {rule}; expected 'uniform' or 'none'"

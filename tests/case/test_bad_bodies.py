@@ -1,0 +1,441 @@
+"""Wrong bodies: each is refused with one line that names the key, before an engine is made."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesokit import (
+    Box,
+    Capsule,
+    Case,
+    CaseError,
+    Cylinder,
+    Demix,
+    Disk,
+    Fluid,
+    HalfSpace,
+    Harmonic,
+    Molecule,
+    NoCollision,
+    Plates,
+    Polymer,
+    Run,
+    Sinusoidal,
+    Solutes,
+    Species,
+    Sphere,
+    Stress,
+    StressInTime,
+    Uniform,
+)
+from mesokit.method.mpcd.body.capsule import CapsuleBody
+from mesokit.method.mpcd.body.cuboid import CuboidBody
+from mesokit.method.mpcd.body.disk import DiskBody
+from mesokit.method.mpcd.body.ellipse import EllipseBody
+from mesokit.method.mpcd.body.protocol import BodyStart, BodyTrap, GapPotential, Squirming
+from mesokit.method.mpcd.body.rectangle import RectangleBody
+from mesokit.method.mpcd.body.sphere import SphereBody
+from mesokit.method.mpcd.body.spheroid import SpheroidBody
+from mesokit.method.mpcd.body.union import UnionBody
+from mesokit.method.mpcd.start.bodies import first_places
+from tests.helpers.refusals import refused
+
+SPACE = "[run]\nsteps = 1\n[box]\nsize = [16, 16, 16]\n"
+PLANE = "[run]\nsteps = 1\n[box]\nsize = [16, 16]\n"
+BALL = '[[bodies]]\nshape = "sphere"\nradius = 3\n'
+DISK = '[[bodies]]\nshape = "disk"\nradius = 3\n'
+
+# what is wrong in a file: the exact line
+FILES = {
+    SPACE + BALL.replace("[[bodies]]", "[bodies]"):
+        "bodies: expected [[bodies]], in double brackets",
+    SPACE + BALL.replace("bodies", "body"):
+        "body: unknown key of method 'mpcd'; did you mean 'bodies'?",
+    SPACE + BALL.replace("radius", "radus"):
+        "bodies[#1].radus: unknown key; did you mean 'radius'?",
+    SPACE + BALL + 'nam = "a"\n': "bodies[#1].nam: unknown key; did you mean 'name'?",
+    SPACE + BALL.replace('shape = "sphere"\n', ""):
+        "bodies[#1].shape: missing; expected 'capsule', 'cuboid', 'disk', 'ellipse', 'rectangle', "
+        "'sphere', 'spheroid' or 'union'",
+    SPACE + BALL.replace("= 3", "= -3"): "bodies[#1].radius = -3: expected a number above 0",
+    SPACE + BALL + "number = 0\n": "bodies[#1].number = 0: expected a number of at least 1",
+    SPACE + BALL + 'surface = "slippy"\n':
+        "bodies[#1].surface = 'slippy': expected 'no-slip' or 'slip'; did you mean 'slip'?",
+    SPACE + BALL + 'virtual = "top-up"\n':
+        "bodies[#1].virtual = 'top-up': expected 'fill' or 'none'",
+    SPACE + BALL + 'fixed = ["w"]\n':
+        "bodies[#1].fixed[#1] = 'w': expected 'x', 'y', 'z' or 'orientation'",
+    SPACE + BALL + 'fixed = "x"\n': "bodies[#1].fixed = 'x': expected a list",
+    SPACE + BALL + "mass = 300\ndensity = 3\n":
+        "bodies[#1].density: not with mass; give one of them",
+    SPACE + BALL + "interaction = false\n": "bodies[#1].interaction = false: expected a table",
+    SPACE + BALL + "interaction = { range = 0.1 }\n":
+        "bodies[#1].interaction.range = 0.1: expected a number of at least 0.25",
+    SPACE + BALL + "interaction = { depth = -1 }\n":
+        "bodies[#1].interaction.depth = -1: expected a number of at least 0",
+    SPACE + BALL + "trap = {}\n": "bodies[#1].trap.k: missing; a trap needs k, angular or both",
+    SPACE + BALL + "trap = { angular = 1, centre = [8, 8, 8] }\n":
+        "bodies[#1].trap.centre = [8, 8, 8]: needs k, a stiffness",
+    SPACE + BALL + "trap = { k = 1, direction = [1, 0, 0] }\n":
+        "bodies[#1].trap.direction = [1, 0, 0]: needs angular, a stiffness",
+    SPACE + BALL + "trap = { angular = 1, direction = [0, 0, 0] }\n":
+        "bodies[#1].trap.direction = [0, 0, 0]: expected a vector other than 0",
+    SPACE + BALL + "hinge = [0, 0, 0]\n":
+        "bodies[#1].hinge = [0, 0, 0]: expected a vector other than 0",
+    SPACE + BALL + 'hinge = [1, 0, 0]\nfixed = ["orientation"]\n':
+        "bodies[#1].hinge: not with fixed = 'orientation', which never turns",
+    SPACE + BALL + "swim = {}\n": "bodies[#1].swim.B1: missing; a squirmer needs B1, B2 or both",
+    SPACE + BALL + 'surface = "slip"\nswim = { B1 = 1 }\n':
+        "bodies[#1].swim: not with surface = 'slip', which drags no fluid along",
+    SPACE + '[[bodies]]\nshape = "cuboid"\nsize = [4, 4, 4]\nswim = { B1 = 1 }\n':
+        "bodies[#1].swim: only of a sphere, disk, spheroid or ellipse",
+    SPACE + '[[bodies]]\nshape = "capsule"\nlength = 4\nradius = 2\n':
+        "bodies[#1].length = 4: expected more than 2 radius",
+    SPACE + BALL + 'start = { rule = "given" }\n':
+        "bodies[#1].start.positions: missing; rule = 'given' needs them",
+    SPACE + BALL + "start = { positions = [[1, 2, 3]] }\n":
+        "bodies[#1].start.positions: only with rule = 'given'",
+    SPACE + BALL + "start = { orientations = [[1, 1, 0, 0]] }\n":
+        "bodies[#1].start.orientations: [1, 1, 0, 0] is no unit quaternion",
+    SPACE + '[[bodies]]\nshape = "union"\nparts = [{ shape = "sphere", centre = [0, 0, 0], '
+    'radius = 2, fluid = "inside" }]\n': "bodies[#1].parts[#1].fluid = 'inside': expected a solid",
+    # what only a start can know
+    PLANE + DISK + 'number = 2\nstart = { rule = "given", positions = [[2, 8], [13, 8]] }\n':
+        "bodies[#1].start: its body 2 overlaps body 1",
+    PLANE + DISK + 'start = { rule = "given", positions = [[8, 2]] }\n'
+    '[[wall]]\nshape = "plates"\naxis = "y"\n':
+        "bodies[#1].start: its body 1 is in a wall, about 1 deep",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", FILES, ids=[line.partition(":")[0] for line in FILES.values()])
+def test_a_file_with_wrong_bodies_is_refused(text: str, tmp_path: Path, capsys) -> None:
+    file = tmp_path / "bad.toml"
+    file.write_text(text)
+    assert refused(capsys, "check", file) == f"mesokit: error: {file}: {FILES[text]}\n"
+
+
+SPHERE, ROUND = SphereBody(radius=3), DiskBody(radius=3)
+FOR_EACH = "numbers, one for each axis of the"
+PUSHED = {"force": [1, 0, 0], "counter_force": True}
+
+
+def given(*rows: list[float]) -> BodyStart:
+    """A start at these places."""
+    return BodyStart(rule="given", positions=rows)
+
+
+# name: (dimension, bodies, other sections, the exact line)
+CASES = {
+    # shapes
+    "a sphere in 2D": (
+        2, [SPHERE], {}, "bodies[#1].shape = 'sphere': not in 2D; expected 'capsule', 'disk', "
+        "'ellipse', 'rectangle' or 'union'",
+    ),
+    "a disk in 3D": (
+        3, [SPHERE, ROUND], {}, "bodies[#2].shape = 'disk': not in 3D; expected 'capsule', "
+        "'cuboid', 'sphere', 'spheroid' or 'union'",
+    ),
+    "a part of another dimension": (
+        2, [UnionBody(parts=[Disk([0, 0], 2), Sphere([3, 0, 0], 2)])], {},
+        "bodies[#1].parts[#2].shape = 'sphere': not in 2D; expected 'capsule', 'disk', 'ellipse' "
+        "or 'rectangle'",
+    ),
+    "a part at no place": (
+        3, [UnionBody(parts=[Sphere([0, 0], 2)])], {},
+        f"bodies[#1].parts[#1].centre = [0, 0]: expected 3 {FOR_EACH} 3D box",
+    ),
+    "a part between planes": (
+        3, [UnionBody(parts=[Capsule([0, 0], [0, 0, 1], 2)])], {},
+        f"bodies[#1].parts[#1].start = [0, 0]: expected 3 {FOR_EACH} 3D box",
+    ),
+    "an endless part": (
+        3, [UnionBody(parts=[Cylinder([0, 0, 0], 2, "x")])], {},
+        "bodies[#1].parts[#1].shape = 'cylinder': not part of a body that moves; expected "
+        "'capsule', 'cuboid', 'sphere' or 'spheroid'",
+    ),
+    "half of space": (
+        3, [UnionBody(parts=[HalfSpace([0, 0, 0], [0, 0, 1])])], {},
+        "bodies[#1].parts[#1].shape = 'half-space': not part of a body that moves; expected "
+        "'capsule', 'cuboid', 'sphere' or 'spheroid'",
+    ),
+    # vectors
+    "a short force": (
+        3, [SphereBody(radius=3, force=[1, 0])], {},
+        f"bodies[#1].force = [1, 0]: expected 3 {FOR_EACH} 3D box",
+    ),
+    "a long force": (
+        2, [DiskBody(radius=3, force=[1, 0, 0])], {},
+        f"bodies[#1].force = [1, 0, 0]: expected 2 {FOR_EACH} 2D box",
+    ),
+    "a short centre": (
+        3, [SphereBody(radius=3, trap=BodyTrap(k=1, centre=[8, 8]))], {},
+        f"bodies[#1].trap.centre = [8, 8]: expected 3 {FOR_EACH} 3D box",
+    ),
+    "a centre outside": (
+        3, [SphereBody(radius=3, trap=BodyTrap(k=1, centre=[8, 8, 17]))], {},
+        "bodies[#1].trap.centre = [8, 8, 17]: outside the box along z; expected 0 to 16",
+    ),
+    "a long direction": (
+        2, [EllipseBody(size=[6, 4], trap=BodyTrap(angular=1, direction=[1, 0, 0]))], {},
+        f"bodies[#1].trap.direction = [1, 0, 0]: expected 2 {FOR_EACH} 2D box",
+    ),
+    "a vector that turns a disk": (
+        2, [DiskBody(radius=3, torque=[0, 0, 1])], {},
+        "bodies[#1].torque = [0, 0, 1]: expected one number in 2D, about z",
+    ),
+    "a number that turns a sphere": (
+        3, [SphereBody(radius=3, torque=1)], {}, "bodies[#1].torque = 1: expected 3 numbers in 3D",
+    ),
+    "two that turn a sphere": (
+        3, [SphereBody(radius=3, torque=[1, 2])], {},
+        "bodies[#1].torque = [1, 2]: expected 3 numbers in 3D",
+    ),
+    "fixed along z": (
+        2, [DiskBody(radius=3, fixed=["x", "z"])], {},
+        "bodies[#1].fixed = ['x', 'z']: a 2D box has only 'x' and 'y'",
+    ),
+    "a hinge in 2D": (
+        2, [DiskBody(radius=3, hinge=[0, 0, 1])], {},
+        "bodies[#1].hinge = [0, 0, 1]: only in 3D; in 2D all bodies turn about z alone",
+    ),
+    "a short hinge": (
+        3, [SphereBody(radius=3, hinge=[0, 1])], {},
+        f"bodies[#1].hinge = [0, 1]: expected 3 {FOR_EACH} 3D box",
+    ),
+    # sizes
+    "a large sphere": (
+        3, [SphereBody(radius=6.5)], {}, "bodies[#1].radius = 6.5: its images may meet, for it is "
+        "13 long; expected at most 12 in a box of 16 along x",
+    ),
+    "a long rod": (
+        2, [CapsuleBody(length=14, radius=1)], {}, "bodies[#1].length = 14: its images may meet, "
+        "for it is 14 long; expected at most 12 in a box of 16 along x",
+    ),
+    "a long spheroid": (
+        3, [SpheroidBody(half_length=7, radius=2)], {}, "bodies[#1].half_length = 7: its images "
+        "may meet, for it is 14 long; expected at most 12 in a box of 16 along x",
+    ),
+    "a wide spheroid": (
+        3, [SpheroidBody(half_length=2, radius=7)], {}, "bodies[#1].radius = 7: its images may "
+        "meet, for it is 14 long; expected at most 12 in a box of 16 along x",
+    ),
+    "a large rectangle between plates": (
+        2, [RectangleBody(size=[12, 5])], {"walls": [Plates("x")]}, "bodies[#1].size = [12, 5]: "
+        "its images may meet, for it is 13 long; expected at most 12 in a box of 16 along y",
+    ),
+    "a large union": (
+        2, [UnionBody(parts=[Disk([0, 0], 2), Disk([10, 0], 2)])], {}, "bodies[#1].parts: its "
+        "images may meet, for it is 14 long; expected at most 12 in a box of 16 along x",
+    ),
+    "a small sphere": (
+        3, [SPHERE, SphereBody(radius=0.5)], {}, "bodies[#2].radius = 0.5: a mass of 5.24; "
+        "expected at least 10, that of 10 particles of the fluid",
+    ),
+    "a light sphere": (
+        3, [SphereBody(radius=3, mass=15)], {"fluid": Fluid(mass=2)}, "bodies[#1].mass = 15: a "
+        "mass of 15; expected at least 20, that of 10 particles of the fluid",
+    ),
+    "a thin cuboid": (
+        3, [CuboidBody(size=[4, 4, 4], density=0.1)], {}, "bodies[#1].density = 0.1: a mass of "
+        "6.4; expected at least 10, that of 10 particles of the fluid",
+    ),
+    "too many": (
+        3, [SphereBody(radius=1, number=2**24), SphereBody(radius=1)], {},
+        "bodies: 16777217 in all; expected at most 16777216",
+    ),
+    "no fluid left": (
+        2, [DiskBody(radius=3, number=9)], {},
+        "bodies: they fill 254.5 of 256 cells; expected at most 90%: fewer or smaller bodies",
+    ),
+    "one name": (
+        3, [SphereBody(radius=3, name="ball"), SphereBody(radius=2, name="ball")], {},
+        "bodies[#2].name: 'ball' is also the name of bodies[#1]; rename one",
+    ),
+    "the name of another": (
+        3, [SPHERE, SphereBody(radius=2, name="sphere-1")], {},
+        "bodies[#2].name: 'sphere-1' is also the name of bodies[#1]; rename one",
+    ),
+    # what moves them
+    "a spheroid that tumbles": (
+        3, [SpheroidBody(half_length=4, radius=3, swim=Squirming(B1=1, tumble_rate=0.1))], {},
+        "bodies[#1].swim.tumble_rate = 0.1: only of a sphere or a disk; others have no room to "
+        "turn at once",
+    ),
+    "nothing to balance": (
+        3, [SphereBody(radius=3, counter_force=True)], {},
+        "bodies[#1].counter_force = true: needs a force that it balances",
+    ),
+    "a force that turns": (
+        3, [SphereBody(radius=3, frame="body", **PUSHED)], {}, "bodies[#1].counter_force = true: "
+        "not with frame = 'body', whose force turns with the body; use 'box'",
+    ),
+    "a force that plates take": (
+        3, [SphereBody(radius=3, **PUSHED)], {"walls": [Plates("y")]}, "bodies[#1].counter_force "
+        "= true: not with walls, which take the force; leave it out",
+    ),
+    "a force in a wave": (
+        3, [SphereBody(radius=3, **PUSHED)], {"fluid": Fluid(force=Sinusoidal(amplitude=0.1))},
+        "bodies[#1].counter_force = true: not with fluid.force.rule = 'sinusoidal'; expected "
+        "'uniform' or 'none'",
+    ),
+    # starts
+    "too few places": (
+        3, [SphereBody(radius=3, number=2, start=given([1, 2, 3]))], {},
+        "bodies[#1].start.positions: 1 row; expected 2, one for each body (number)",
+    ),
+    "a flat place": (
+        3, [SphereBody(radius=3, start=given([1, 2]))], {},
+        "bodies[#1].start.positions[#1] = [1, 2]: expected 3 numbers",
+    ),
+    "a place outside": (
+        3, [SphereBody(radius=3, start=given([1, 2, -3]))], {},
+        "bodies[#1].start.positions[#1] = [1, 2, -3]: outside the box along z; expected 0 to 16",
+    ),
+    "an angle in 3D": (
+        3, [SphereBody(radius=3, start=BodyStart(orientations=[[90]]))], {},
+        "bodies[#1].start.orientations[#1] = [90]: expected 4 numbers, a quaternion",
+    ),
+    "a quaternion in 2D": (
+        2, [DiskBody(radius=3, start=BodyStart(orientations=[[1, 0, 0, 0]]))], {},
+        "bodies[#1].start.orientations[#1] = [1, 0, 0, 0]: expected 1 number, its angle",
+    ),
+    "too many velocities": (
+        2, [DiskBody(radius=3, start=BodyStart(velocities=[[0, 0], [0, 0]]))], {},
+        "bodies[#1].start.velocities: 2 rows; expected 1, one for each body (number)",
+    ),
+    # what is not there yet
+    "an open box": (
+        3, [SPHERE], {"box": Box([16] * 3, open=["x"]), "fluid": Fluid(collision=NoCollision())},
+        "box.open = ['x']: not with bodies; leave one of both out",
+    ),
+    "molecules": (
+        3, [SPHERE], {"fluid": Fluid(molecule=Molecule(bond=Harmonic(K=1)))},
+        "fluid.molecule: not with bodies yet; expected a fluid of single particles",
+    ),
+    "a mixture": (
+        3, [SPHERE], {"fluid": Fluid(species=[Species(1, 5), Species(2, 5)])},
+        "fluid.species: of different mass, not with bodies yet; expected one mass",
+    ),
+    "fluids that demix": (
+        3, [SPHERE], {"fluid": Fluid(species=[Species(1, 5), Species(1, 5)], collision=Demix())},
+        "fluid.collision.rule = 'demix': not with bodies yet; use 'srd'",
+    ),
+    "beads": (
+        3, [SPHERE], {"solutes": Solutes([Polymer(3)])},
+        "solutes: not with bodies yet; leave one of both out",
+    ),
+    "stress": (
+        3, [SPHERE], {"observe": [Stress()]},
+        "observe[#1].quantity = 'stress': not with bodies yet, which carry stress too",
+    ),
+    "stress in time": (
+        3, [SPHERE], {"observe": [StressInTime()]},
+        "observe[#1].quantity = 'stress-in-time': not with bodies yet, which carry stress too",
+    ),
+}  # fmt: skip
+
+
+def case_of(d: int, bodies, **parts) -> Case:
+    """A case with these bodies in a small box."""
+    box = parts.pop("box", Box([16] * d))
+    return Case(run=Run(steps=1), box=box, bodies=bodies, **parts)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_case_with_wrong_bodies_is_refused(name: str) -> None:
+    d, bodies, parts, expected = CASES[name]
+    with pytest.raises(CaseError) as error:
+        case_of(d, bodies, **parts)
+    assert str(error.value) == expected
+
+
+WIDE = {"box": Box([30, 30])}
+ROD, OVAL, SQUARE = {"length": 10, "radius": 1}, {"size": [10, 4]}, {"size": [4, 4]}
+PAIR = {"number": 2}
+ON_EDGE = BodyStart(rule="given", positions=[[10, 3.9]], orientations=[[90]])
+SLIT, POST = {"walls": [Plates("y")]}, {"walls": [Disk([10, 10.2], 0.7)]}
+# name: (bodies in a box of 30 x 30, walls, the exact line; "" where there is room)
+STARTS = {
+    "rods side by side": ([CapsuleBody(**ROD, **PAIR, start=given([10, 9], [10, 11.1]))], {}, ""),
+    "rods": (
+        [CapsuleBody(**ROD, **PAIR, start=given([10, 9], [10, 10.9]))], {},
+        "bodies[#1].start: its body 2 overlaps body 1",
+    ),
+    "rods across an end": (
+        [CapsuleBody(**ROD, **PAIR, start=given([6, 9], [26.1, 9]))], {},
+        "bodies[#1].start: its body 2 overlaps body 1",
+    ),
+    "beside an end": ([CapsuleBody(**ROD, **PAIR, start=given([6, 9], [25.9, 9]))], {}, ""),
+    "one in another": (
+        [EllipseBody(**OVAL, start=given([9, 9])), DiskBody(radius=1, start=given([10, 9]))], {},
+        "bodies[#2].start: its body 1 overlaps body 1 of bodies[#1]",
+    ),
+    "corners": ([RectangleBody(**SQUARE, **PAIR, start=given([9, 9], [13.1, 13.1]))], {}, ""),
+    "corners that overlap": (
+        [RectangleBody(**SQUARE, **PAIR, start=given([9, 9], [12.9, 12.9]))], {},
+        "bodies[#1].start: its body 2 overlaps body 1",
+    ),
+    "disks on one lattice": (
+        [DiskBody(radius=3, start=BodyStart(rule="lattice")) for _ in range(2)], {},
+        "bodies[#2].start: its body 1 overlaps body 1 of bodies[#1]",
+    ),
+    "flat on a plate": ([EllipseBody(**OVAL, start=given([10, 2.1]))], SLIT, ""),
+    "in a plate": (
+        [EllipseBody(**OVAL, start=given([10, 1.8]))], SLIT,
+        "bodies[#1].start: its body 1 is in a wall, about 0.2 deep",
+    ),
+    "on edge in a plate": (
+        [EllipseBody(**OVAL, start=ON_EDGE)], SLIT,
+        "bodies[#1].start: its body 1 is in a wall, about 1.1 deep",
+    ),
+    "around a post": (
+        [EllipseBody(**OVAL, start=given([10, 10]))], POST,
+        "bodies[#1].start: its body 1 is in a wall, about 0.69 deep",
+    ),
+    "far from a post": ([DiskBody(radius=8, start=given([10, 19]))], POST, ""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_bodies_of_all_shapes_start_apart(name: str) -> None:
+    bodies, walls, expected = STARTS[name]
+    case = case_of(2, bodies, **WIDE, **walls)
+    if not expected:
+        first_places(case)
+        return
+    with pytest.raises(CaseError) as error:
+        first_places(case)
+    assert str(error.value) == expected
+
+
+def test_ten_thousand_spheres_start_apart() -> None:
+    case = case_of(3, [SphereBody(radius=3, number=10_000)], box=Box([256] * 3))
+    places, turns = first_places(case)
+    away = places[::10, None] - places[None, ::10]
+    away -= 256 * np.rint(away / 256)
+    distance = np.sqrt((away**2).sum(axis=2))[~np.eye(1000, dtype=bool)]
+    assert distance.min() > 6.0
+    assert np.linalg.norm(turns, axis=1) == pytest.approx(1.0)
+
+
+def test_where_no_place_is_found_it_is_said_how_many_found_one() -> None:
+    case = case_of(2, [DiskBody(radius=3, number=7)])
+    with pytest.raises(CaseError, match=r"bodies\[#1\].number = 7: no room was found for more"):
+        first_places(case)
+
+
+def test_no_repulsion_can_be_said_in_a_file(tmp_path: Path) -> None:
+    bare = case_of(3, [SphereBody(radius=3, interaction=GapPotential(depth=0))])
+    file = tmp_path / "bare.toml"
+    file.write_text(bare.to_toml())
+    assert Case.from_toml(file) == bare
+    assert bare.bodies[0].interaction.depth == 0
+    assert case_of(3, [SPHERE]).bodies[0].interaction.depth == 1
+
+
+def test_a_uniform_force_goes_with_a_counter_force() -> None:
+    case_of(3, [SphereBody(radius=3, **PUSHED)], fluid=Fluid(force=Uniform([0.1, 0, 0])))

@@ -1,0 +1,150 @@
+"""What is said of bodies before a run: rows of a check, warnings, and where they do not run yet."""
+
+from __future__ import annotations
+
+import pytest
+
+from mesokit import (
+    SRD,
+    Box,
+    Case,
+    CaseError,
+    Disk,
+    Fluid,
+    NoCollision,
+    Plates,
+    Run,
+    SRDPlusA,
+    theory,
+)
+from mesokit.method.mpcd.body.capsule import CapsuleBody
+from mesokit.method.mpcd.body.disk import DiskBody
+from mesokit.method.mpcd.body.protocol import BodyTrap, GapPotential
+from mesokit.method.mpcd.body.sphere import SphereBody
+from mesokit.method.mpcd.body.union import UnionBody
+from mesokit.method.mpcd.derived import derive, summary
+from mesokit.method.mpcd.engine.cuda.refused import refused
+from mesokit.method.mpcd.method import METHOD
+
+DENSE = {"density": 10, "collision": SRDPlusA()}
+
+
+def case_of(size, *bodies, walls=(), **fluid):
+    """A case with these bodies, in a fluid that conserves angular momentum unless said."""
+    return Case(
+        run=Run(steps=1), box=Box(size), bodies=bodies, walls=walls, fluid=Fluid(**DENSE | fluid)
+    )
+
+
+def warnings_of(*given, **more):
+    """What such a case is warned of its bodies."""
+    return [line for line in derive(case_of(*given, **more)).warnings if "bodies" in line]
+
+
+def test_each_kind_has_a_row():
+    case = case_of(
+        [20, 20], DiskBody(radius=3, number=2), CapsuleBody(length=6, radius=1, mass=99, name="rod")
+    )
+    rows = {name: (value, word) for name, value, word in summary(case).rows}
+    assert rows["bodies disk-1"] == ("2", "radius 3 a, mass 282.7, volume fraction 0.141")
+    assert rows["bodies rod"] == ("1", "radius 3 a, mass 99, volume fraction 0.0279")
+
+
+def test_the_fraction_is_of_what_walls_leave():
+    case = case_of([20, 20], DiskBody(radius=2), walls=[Disk([4, 4], 3)])
+    rows = {name: word for name, _, word in summary(case).rows}
+    assert rows["bodies disk-1"].endswith("volume fraction 0.0338")
+
+
+def test_nothing_is_said_of_a_sphere_that_is_well_resolved():
+    assert warnings_of([20, 20, 20], SphereBody(radius=3)) == []
+
+
+# name: (size, bodies, keys of the fluid, the only warning)
+WARNED = {
+    "thin": (
+        [20, 20], [CapsuleBody(length=9, radius=0.8)], {}, "bodies[#1]: it is 1.6 cells thick; "
+        "below 2 the flow around it is not resolved: give all lengths 1.2 times as many cells",
+    ),
+    "light": (
+        [20, 20], [DiskBody(radius=3), DiskBody(radius=2, density=5)], {},
+        "bodies[#2]: its density 5 is below that of the fluid, 10: its virtual particles are "
+        "thinned in proportion",
+    ),
+    "fast": (
+        [20, 20, 20], [SphereBody(radius=1, mass=10)], {"density": 2, "kT": 9},
+        "fluid.timestep = 0.3: in one, bodies[#1] moves by 0.28 of its radius; above 0.25 it is "
+        "too hot: a shorter timestep or a larger mass",
+    ),
+    "sampled": (
+        [20, 20], [UnionBody(parts=[Disk([0, 0], 3), Disk([4, 0], 3)])], {},
+        "bodies[#1].parts: some overlap, so its volume and inertia are sampled on a grid",
+    ),
+    "crowded": (
+        [12, 12], [DiskBody(radius=3, number=2)], {}, "bodies: two of them reach 6.5 from centre "
+        "to centre, more than half of the box of 12: of the images of another, only the nearest "
+        "repels",
+    ),
+    "pushed": (
+        [20, 20], [DiskBody(radius=3, force=[0, 2])], {}, "bodies: together they are pushed along "
+        "y, and nothing holds the fluid: the whole box speeds up for ever; use walls, or "
+        "counter_force = true",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WARNED)
+def test_a_warning(name):
+    size, bodies, fluid, expected = WARNED[name]
+    more = {"timestep": 0.3} if name == "fast" else {}
+    assert warnings_of(size, *bodies, **fluid, **more) == [expected]
+
+
+HOLD = {"trap": BodyTrap(k=1)}
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        DiskBody(radius=3, force=[1, 0], counter_force=True),
+        DiskBody(radius=3, force=[1, 0], fixed=["x"]),
+        DiskBody(radius=3, force=[1, 0], **HOLD),
+        DiskBody(radius=3, density=5, virtual="none"),
+        DiskBody(radius=3, density=5, surface="slip"),
+        DiskBody(radius=3, number=2, interaction=GapPotential(depth=0, range=0.25)),
+    ],
+)
+def test_no_warning(body):
+    assert warnings_of([20, 20], body) == []
+
+
+def test_a_force_that_walls_take_is_no_warning():
+    assert warnings_of([20, 20], DiskBody(radius=3, force=[1, 0]), walls=[Plates("y")]) == []
+
+
+@pytest.mark.parametrize(("d", "name"), [(2, "disk"), (3, "sphere")])
+def test_rotational_friction_lacks_a_part_of_what_collisions_carry(d, name):
+    body = DiskBody(radius=3) if d == 2 else SphereBody(radius=3)
+    [line] = warnings_of([20] * d, body, collision=SRD())
+    known = theory.transport("srd", d, density=10, timestep=0.1, angle=130)
+    kept = 1 - known.viscosity_collisional / known.viscosity / d
+    assert line == (
+        "fluid.collision.rule = 'srd': it does not conserve angular momentum: bodies have "
+        f"{kept:.2g} of the rotational friction of a {name}, and turn too fast in a shear flow; "
+        "use 'at+a' or 'srd+a'"
+    )
+
+
+@pytest.mark.parametrize("rule", [SRD(), NoCollision()])
+def test_bodies_that_do_not_turn_need_no_angular_momentum(rule):
+    fixed = ["orientation"] if rule.acts else []
+    found = warnings_of([20, 20], DiskBody(radius=3, fixed=fixed), collision=rule)
+    assert not [line for line in found if "angular momentum" in line]
+
+
+def test_they_run_on_one_rank_of_processors_alone():
+    case = case_of([20, 20], DiskBody(radius=3))
+    assert list(refused(case)) == ["no bodies that move yet; expected --device cpu"]
+    with pytest.raises(CaseError) as error:
+        METHOD.check_ranks(case, 2)
+    assert str(error.value) == "bodies: not on 2 ranks yet; expected one rank"
