@@ -140,6 +140,9 @@ def test_shapes_in_three_dimensions():
     centres = [[-1, 0, 0], [2, 0, 0]]
     assert dumbbell == {"type": "SphereUnion", "diameters": [2, 4], "centers": centres}
 
+    along = drawn_as(parts_of(region.ellipsoid((0, 0, 0), (1, 0, 0), 3, 2)), 3)
+    assert along == {"type": "Ellipsoid", "a": 3, "b": 2, "c": 2}
+
     rod = drawn_as(parts_of(region.capsule((-2, 0, 0), (2, 0, 0), 1)), 3)
     corners = np.array(rod["vertices"])
     nearest = np.clip(corners[:, 0], -2, 2)

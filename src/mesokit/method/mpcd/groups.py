@@ -38,7 +38,7 @@ def _solutes(case: Case) -> tuple[Kind, ...]:
 
 
 def _bodies(case: Case) -> tuple[Kind, ...]:
-    d, density = case.box.dimension, mass_density(case)
+    d, density = case.box.dimension, fluid_mass_density(case)
     found = []
     for name, kind in named(case.bodies):
         solid = kind.solid(d)
@@ -47,7 +47,7 @@ def _bodies(case: Case) -> tuple[Kind, ...]:
     return tuple(found)
 
 
-def mass_density(case: Case) -> float:
+def fluid_mass_density(case: Case) -> float:
     """Mass of the fluid per volume, without solutes."""
     return float(sum(kind.density * kind.mass for kind in case.fluid.kinds))
 

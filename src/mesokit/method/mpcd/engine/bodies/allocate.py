@@ -16,7 +16,7 @@ from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.state import MovingBodies
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
-from mesokit.method.mpcd.groups import mass_density
+from mesokit.method.mpcd.groups import fluid_mass_density
 from mesokit.scalar.pointer import address
 
 FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
@@ -29,7 +29,7 @@ Floats = NDArray[np.float64]
 
 def masses_of(case: Case) -> Floats:
     """Mass of a body of each kind."""
-    d, density = case.box.dimension, mass_density(case)
+    d, density = case.box.dimension, fluid_mass_density(case)
     return np.array([kind.mass_in(d, density) for kind in case.bodies])
 
 
@@ -72,7 +72,7 @@ def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
     row[state.RADIUS] = solid.radius
     row[state.IS_BALL] = len(solid.parts) == 1 and solid.parts[0].kind == "ball"
     row[state.IS_SLIP] = kind.surface == "slip"
-    fluid = mass_density(case) * solid.volume
+    fluid = fluid_mass_density(case) * solid.volume
     if kind.virtual == "fill" and kind.surface != "slip":
         row[state.FILLED] = min(1.0, mass / fluid)
     if kind.hinge is not None and d == 3:
