@@ -56,7 +56,7 @@ def file_of_a_wave(dimension: int) -> str:
 
 def make_case(
     size=(8, 8), observe=(), walls=(), trajectory=None, seed=1, solutes=None, shear=None,
-    shear_rate=0.0, shear_frequency=0.0, **fluid,
+    shear_rate=0.0, shear_frequency=0.0, bodies=(), **fluid,
 ) -> Case:  # fmt: skip
     """A case with one step to run; of rules for two species with two that are alike."""
     kinds = fluid["collision"].kinds if "collision" in fluid else None
@@ -68,6 +68,7 @@ def make_case(
         box=Box(size, shear_rate=shear_rate, shear_frequency=shear_frequency, shear=shear),
         fluid=Fluid(**fluid),
         solutes=solutes,
+        bodies=bodies,
         walls=walls,
         observe=observe,
         trajectory=trajectory,
