@@ -70,10 +70,9 @@ class Followed(NamedTuple):
     def with_start(self, error: float, value: float, runs: int = 1) -> float:
         """The error of a number that grows as kT, with what the starts of so many runs add.
 
-        Virtual particles in bodies are at kT, and bring a fluid there that keeps its energy.
+        Virtual particles bring a fluid that keeps its energy to kT, but slowly.
         """
-        filled = any(one.virtual == "fill" and one.surface != "slip" for one in self.case.bodies)
-        return error if filled else setting.with_start(self.case, error, value, runs)
+        return setting.with_start(self.case, error, value, runs)
 
     # What theory knows, nan where it knows nothing: a value and a note on it.
 
