@@ -79,6 +79,11 @@ class BodyReadings:
         return x
 
     @property
+    def images(self) -> NDArray[np.int32]:
+        """Boxes that each is away (bodies, d)."""
+        return self._columns(BOXES).astype(np.int32)
+
+    @property
     def velocities(self) -> Floats:
         """Velocities (bodies, d)."""
         return self._columns(VELOCITY)
