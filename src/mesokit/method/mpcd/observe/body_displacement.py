@@ -80,8 +80,9 @@ class BodyDisplacementAccumulator(BlockAccumulator):
         """The curve and its slope where it is a straight line."""
         steps, moved = self.origins.sampled() * self.observable.every, self.origins.estimate()
         time, angles = steps * self.case.fluid.timestep, self.observable.of == "angles"
-        label, of = ("mean square angular displacement" if angles else "mean square displacement",
-                     self.of.rotational_diffusion if angles else self.of.diffusion)  # fmt: skip
+        label, of = "mean square displacement", self.of.diffusion
+        if angles:
+            label, of = "mean square angular displacement", self.of.rotational_diffusion
         slope, found = late_slope(time, moved, self._diffusive_from()), []
         if slope is not None:
             scale, (known, note) = 1 / (2 * len(self.axes)), of()

@@ -122,7 +122,8 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int) -> MovingBodies:
     """Bodies at rest at 0, and room for all that their steps need."""
     case, d = numbers.case, numbers.dimension
     fluid, box = case.fluid, case.box
-    masses, kinds, parts = masses_of(case), [], []
+    masses, kinds = masses_of(case), []
+    parts: list[Any] = []
     for kind, mass in zip(case.bodies, masses.tolist(), strict=True):
         kinds.append(row_of(kind, mass, case, len(parts)))
         parts += kind.solid(d).parts

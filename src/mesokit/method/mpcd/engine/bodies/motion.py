@@ -222,7 +222,7 @@ def tumble(bodies, counter, i, time, planar):
     rate = of_kind(bodies, i, TUMBLES)
     if rate == 0.0:
         return
-    a, b, c, d = words(counter, BODY_TUMBLE, i, 0)
+    a, b, c, _ = words(counter, BODY_TUMBLE, i, 0)
     if unit_open(a) < rate * time:
         s, co = sincos_turn(unit_open(b))
         height = 1.0 - 2.0 * unit_open(c)

@@ -55,7 +55,7 @@ class Readings:
         self._seen.clear()
 
     def totals(self) -> tuple[int, Floats, float]:
-        """Number of particles, momentum (d,) and kinetic energy, beads of solutes and bodies included."""
+        """Number of particles, momentum (d,) and kinetic energy, beads and bodies included."""
         number, sums = self.n, self.motion()
         if self.solutes is not None:
             number, sums = number + self.solutes.shape[0], sums + self.solutes.motion()
