@@ -1,6 +1,6 @@
 """Bodies of all shapes that move in small fluids."""
 
-from mesokit import Disk, Rectangle, Sphere
+from mesokit import Rectangle, Sphere
 from mesokit.method.mpcd.body.capsule import CapsuleBody
 from mesokit.method.mpcd.body.cuboid import CuboidBody
 from mesokit.method.mpcd.body.disk import DiskBody

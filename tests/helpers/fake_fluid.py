@@ -9,6 +9,8 @@ import numpy as np
 from mesokit import Disk, Harmonic, Plates, Sphere, Uniform
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.body.disk import DiskBody
+from mesokit.method.mpcd.body.sphere import SphereBody
 from mesokit.method.mpcd.fluid import Species
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.statistics import Tally
@@ -20,7 +22,8 @@ TWO = (Species(1.0, 3.0), Species(4.0, 2.0))
 
 def case_for(observable, make_case, size, **fluid):
     """A case in which it can be measured: without walls, in a slit, in a flow about a body, in a
-    shear that oscillates, in a fluid of molecules, also between plates, or of two species."""
+    shear that oscillates, in a fluid of molecules, also between plates, of two species, or with
+    bodies that move."""
     middle = [length / 2 for length in size]
     body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
     push = {"force": Uniform((0.01,) + (0.0,) * (len(size) - 1))}
@@ -30,12 +33,47 @@ def case_for(observable, make_case, size, **fluid):
     for walls, parts in (
         ((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid), ((), shear | fluid),
         ((), pairs), ((Plates(axis="y"),), pairs), ((), fluid | {"species": TWO}),
+        ((), fluid | {"bodies": (moving_body(size),)}),
     ):  # fmt: skip
         try:
             return make_case(size, [observable], walls=walls, **parts)
         except CaseError as error:
             refused = error
     raise refused
+
+
+def moving_body(size):
+    """Two small disks or spheres that move in a box of this size."""
+    return (DiskBody if len(size) == 2 else SphereBody)(radius=0.5, number=2, virtual="none")
+
+
+class FakeBodies:
+    """Bodies whose velocities are new at each reading, and which go far."""
+
+    def __init__(self, case, rng):
+        groups = [group for group in case.groups if group.name == "bodies"]
+        kinds = [kind for group in groups for kind in group.kinds]
+        self.masses = np.repeat([kind.mass for kind in kinds], [kind.number for kind in kinds])
+        self.number, self.dimension, self.rng = len(self.masses), case.box.dimension, rng
+
+    def _noise(self, columns):
+        return self.rng.normal(size=(self.number, columns))
+
+    def places(self, unwrapped=False):
+        return self._noise(self.dimension)
+
+    def in_own_frame(self, vectors):
+        return vectors
+
+    def counts(self):
+        return {"second hits": 1, "put back": 0}
+
+    def motion(self):
+        return np.append(np.zeros(self.dimension), 2.0)
+
+    velocities = property(lambda self: self._noise(self.dimension))
+    headings = forces = velocities
+    spins = angles = torques = property(lambda self: self._noise(3))
 
 
 def taken(case, rng):
@@ -65,6 +103,7 @@ class FakeFluid(AtOnce):
         self.density = density  # along y, drawn by rejection at every step
         self.stress = {}
         self.wall_tally, self.wall_steps = None, 0
+        self.bodies = FakeBodies(case, np.random.default_rng(seed)) if case.bodies else None
 
     def hit_walls(self, impulse, steps):
         """Let the walls take momentum (surfaces, d + 1 or d + 3) in so many steps."""

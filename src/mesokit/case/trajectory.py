@@ -1,8 +1,8 @@
 """Which particles of a case are written, and how often."""
 
 import math
-from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,13 +20,15 @@ PAIR = 16  # bytes of the two numbers of a contact
 class Kind(NamedTuple):
     """Equal particles: mass of each, how many there are, and what files for others call them.
 
-    `diameter` is that of a particle in pictures, in cells.
+    `diameter` is that of a particle in pictures, in cells. `shape` is what files for others call
+    one that is no sphere, with its own axes: an entry of `particles/type_shapes` of GSD.
     """
 
     mass: float
     number: int
     name: str = ""
     diameter: float = 0.5
+    shape: Mapping[str, Any] | None = None
 
 
 class Group(NamedTuple):
@@ -71,7 +73,9 @@ class Trajectory:
         ge=1,
         le=1000,
     )
-    of: str = param("all", doc='whose particles: "all", or, of an MPCD fluid, "fluid" or "solutes"')
+    of: str = param(
+        "all", doc='whose particles: "all", or, of MPCD, "fluid", "solutes" or "bodies"'
+    )
     fields: Many[Quantity] = param(("position",), doc="what is written", min_length=1)
     subset: int | None = param(
         None, doc="only the first particles, so many (all unless said)", ge=1

@@ -193,6 +193,11 @@ def _particles(
         size=size,
         closed=(0 in closed, 1 in closed, 2 in closed),
         spheres=diameter is not None,
+        shapes={
+            k: one.shape
+            for k, one in enumerate(one for group in case.groups for one in group.kinds)
+            if one.shape is not None
+        },
     )
 
 

@@ -103,8 +103,12 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     # a sphere for each kind, of the median diameter if those of single particles differ
     of_kinds = [particles.diameter[kinds == k] for k in range(len(particles.names))]
     frame.particles.type_shapes = [
-        {"type": "Sphere", "diameter": float(np.median(own))} if len(own) else {}
-        for own in of_kinds
+        dict(particles.shapes[k])
+        if k in particles.shapes
+        else {"type": "Sphere", "diameter": float(np.median(own))}
+        if len(own)
+        else {}
+        for k, own in enumerate(of_kinds)
     ]
     frame.particles.typeid, frame.particles.mass = kinds, particles.mass
     frame.particles.diameter = particles.diameter
@@ -131,8 +135,8 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             frame.log = {"time": np.array([now.time])}
             if now.spin is not None:
                 frame.log[SPIN.removeprefix("log/")] = now.spin
-                # quaternions 2 q (0, L) of particles that are not rotated, q = 1
-                frame.particles.angmom = np.pad(2 * (now.spin * inertia), ((0, 0), (1, 0)))
+                if particles.spheres:  # quaternions 2 q (0, L) of those not rotated, q = 1
+                    frame.particles.angmom = np.pad(2 * (now.spin * inertia), ((0, 0), (1, 0)))
             file.append(frame)
 
 

@@ -1,5 +1,7 @@
 """Particles and frames of them, as files for other programs contain."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +15,8 @@ class Particles(NamedTuple):
 
     `names` of the kinds; `diameter` (n,); `molecule` (n,) from 0, -1 for single particles; `bonds`
     (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` axes. `spheres`: whether
-    particles are of these diameters, and not only drawn so.
+    particles are of these diameters, and not only drawn so. `shapes`: those of kinds that are no
+    spheres, by the number of the kind, as GSD has them.
     """
 
     number: NDArray[np.int64]
@@ -27,6 +30,7 @@ class Particles(NamedTuple):
     size: Array
     closed: tuple[bool, bool, bool]
     spheres: bool = False
+    shapes: Mapping[int, Mapping[str, Any]] = MappingProxyType({})
 
 
 class Moment(NamedTuple):

@@ -21,6 +21,7 @@ EXACT = " %.17g"  # a number with all digits of double precision
 def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     """A text dump of LAMMPS: ids from 1, wrapped positions, images and velocities if known."""
     marks = " ".join("ff" if shut else "pp" for shut in particles.closed)
+    axes = _axes(particles)
     with path.open("w", encoding="utf-8", newline="\n") as file:
         for now in moments:
             bounds = np.stack([np.zeros(3), particles.size], axis=1)
@@ -42,6 +43,7 @@ def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                 *_vector("ix iy iz", "%d", now.image), *_vector("vx vy vz", FIGURES, now.velocity),
                 *_vector("omegax omegay omegaz", FIGURES, now.spin),
                 *_vector("quatw quati quatj quatk", FIGURES, now.orientation),
+                *_vector("shapex shapey shapez", FIGURES, axes),
             ]  # fmt: skip
             file.write(f"ITEM: ATOMS {' '.join(name for name, _, _ in columns)}\n")
             _table(file, columns)
@@ -121,6 +123,17 @@ def data_of_spheres(path: Path, particles: Particles, moments: Iterable[Moment])
             spin = np.zeros((n, 3)) if now.spin is None else now.spin
             file.write("\nVelocities\n\n")
             np.savetxt(file, np.column_stack([numbers, now.velocity, spin]), fmt=f"%d{EXACT * 6}")
+
+
+def _axes(particles: Particles) -> NDArray[np.float64] | None:
+    """Axes (n, 3) of ellipsoids and spheres, 0 of other shapes; None where no kind has a shape."""
+    if not particles.shapes:
+        return None
+    found = np.repeat(particles.diameter[:, None], 3, axis=1)
+    for k, shape in particles.shapes.items():
+        if shape["type"] != "Sphere":
+            found[particles.kind == k] = [2 * shape.get(axis, 0.0) for axis in "abc"]
+    return found
 
 
 def _vector(names: str, form: str, values: Any) -> Iterator[tuple[str, str, Any]]:

@@ -13,6 +13,7 @@ from mesokit.seam.units import Units
 
 SHOWN = 6  # curves in one figure
 ALIKE = 0.01  # how near a line is to a curve that shows the same
+LINEAR, ANGULAR = "mean square displacement", "mean square angular displacement"
 DEEPEST = 1e-4  # of the largest modulus, the least that is drawn
 
 
@@ -25,9 +26,10 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
         ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
     elif ax is None:
         ax = figure.subplots()
-    components = result.extra.get("components", "")
-    along = f" along {', '.join(components)}" if components else ""
-    seen = f"{result.label.removeprefix('mean square displacement').strip()}{along}".strip()
+    angular = result.label.startswith(ANGULAR)
+    components, name = result.extra.get("components", ""), ANGULAR if angular else LINEAR
+    along = f" {'about' if angular else 'along'} {', '.join(components)}" if components else ""
+    seen = f"{result.label.removeprefix(name).strip()}{along}".strip()
     points(ax, t, value, error, label=f"measured{f' ({seen})' if seen else ''}, {ERROR}")
     if result.expected is not None:
         ax.plot(t, result.expected[use], color="black", label=theory_of(result), zorder=3)
@@ -40,7 +42,7 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
     if len(t):
         ax.set(xscale="log", yscale="log")
         sparse_logarithm(ax.xaxis, t[0], t[-1])
-    ax.set_ylabel(labelled("mean square displacement", result.units["value"]))
+    ax.set_ylabel(labelled(name, result.units["value"]))
     legend_above(ax, columns=1)
     if below is not None:
         theory = np.asarray(result.expected)[use]
@@ -85,7 +87,9 @@ def _straight(ax: Any, result: Result, t: Any, value: Any) -> None:
 def draw_memory(result: Result, ax: Any) -> None:
     """Logarithmic in value and time, as a power law follows an exponential."""
     _logarithmic(result, ax)
-    ax.set_ylabel(labelled(r"$|\langle v_x(0)\, v_x(t)\rangle|$", result.units["value"]))
+    letter = r"\Omega" if result.label.startswith("angular") else "v_x"
+    product = rf"$|\langle {letter}(0)\, {letter}(t)\rangle|$"
+    ax.set_ylabel(labelled(product, result.units["value"]))
 
 
 def draw_modulus(result: Result, figure: Any, ax: Any) -> None:

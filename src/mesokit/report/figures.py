@@ -30,7 +30,7 @@ from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
 from mesokit.report.flow.layout import page_width
 from mesokit.report.flow.source import axes_of
-from mesokit.report.particles import flocks, snapshots, tracks
+from mesokit.report.particles import body_tracks, flocks, snapshots, tracks
 from mesokit.report.style import STYLE, WIDTH, fonts, height_of
 from mesokit.seam.in_units import showing
 from mesokit.seam.result import Result
@@ -65,6 +65,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "snapshots": snapshots.draw,
     "signal": series.draw_signal,
     "tracks": tracks.draw,
+    "body tracks": body_tracks.draw,
     "order": flocks.draw_order,
     "bands": flocks.draw_bands,
 }

@@ -4,7 +4,8 @@ Each file has `distance(p, samples, r)`: the signed distance of r from the surfa
 the solid, or something of its sign that is no larger; `normal(p, samples, r)`; and whether the
 solid is CONVEX. p is a row of WIDTH numbers, of which the first three are a place, so that all can
 be moved alike. A primitive of which bodies that move can be made also has its `extent`, its
-`width` and its `integrals`. The kind of each part is a number at run time: one compiled step serves every case.
+`width` and its `integrals`. The kind of each part is a number at run time: one compiled step serves
+every case.
 """
 
 from types import ModuleType

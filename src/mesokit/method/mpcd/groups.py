@@ -1,4 +1,4 @@
-"""The particles of a case: those of the fluid, then the beads of what is dissolved in it."""
+"""The particles of a case: those of the fluid, beads of solutes, then bodies."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,26 +6,50 @@ from numpy.typing import NDArray
 from mesokit.case.case import Case
 from mesokit.case.trajectory import Group, Kind
 from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.body.drawn import drawn_as
+from mesokit.method.mpcd.body.protocol import named
+
+OF_BODIES = ("position", "velocity", "spin", "orientation", "image", "id")
 
 
 def groups(case: Case) -> tuple[Group, ...]:
-    """The fluid, species by species, and its solutes, polymer by polymer.
+    """The fluid, species by species, its solutes, polymer by polymer, and bodies, if there are any.
 
     The fluid has its density times its volume (`fluid_volume`), of each species. Of molecules
     there is a whole number, and of a random solvent none.
     """
-    solutes = case.solutes
-    if solutes is None:
-        return Group("fluid", _fluid(case), kT=float(case.fluid.kT)), Group("solutes", ())
-    kinds, kT = [], float(case.fluid.kT)
-    for i, polymer in enumerate(solutes.polymers):
+    kT = float(case.fluid.kT)
+    found = [Group("fluid", _fluid(case), kT=kT), Group("solutes", _solutes(case), kT=kT)]
+    if case.bodies:
+        found.append(Group("bodies", _bodies(case), OF_BODIES, kT))
+    return tuple(found)
+
+
+def _solutes(case: Case) -> tuple[Kind, ...]:
+    solutes, kinds = case.solutes, []
+    for i, polymer in enumerate(solutes.polymers if solutes is not None else ()):
         # beads have a diameter if they feel one another, others, or else the fluid
         pairs, repelled = (solutes.own_pair(i), *solutes.pairs[i]), solutes.solvent_pair
         sizes = [pair.diameter for pair in pairs if pair is not None]
         sizes += [2.0 * repelled.diameter] if repelled is not None else []
         number = polymer.number * polymer.length
         kinds.append(Kind(solutes.mass_of(i), number, solutes.names[i], *sizes[:1]))
-    return Group("fluid", _fluid(case), kT=kT), Group("solutes", tuple(kinds), kT=kT)
+    return tuple(kinds)
+
+
+def _bodies(case: Case) -> tuple[Kind, ...]:
+    d, density = case.box.dimension, fluid_mass_density(case)
+    found = []
+    for name, kind in named(case.bodies):
+        solid = kind.solid(d)
+        shape, mass = drawn_as(solid.parts, d), kind.mass_in(d, density)
+        found.append(Kind(mass, kind.number, name, 2.0 * solid.radius, shape))
+    return tuple(found)
+
+
+def fluid_mass_density(case: Case) -> float:
+    """Mass of the fluid per volume, without solutes."""
+    return float(sum(kind.density * kind.mass for kind in case.fluid.kinds))
 
 
 def _fluid(case: Case) -> tuple[Kind, ...]:

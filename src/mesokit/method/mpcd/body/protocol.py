@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from abc import ABC, abstractmethod
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,9 @@ from mesokit.case.component import component, name_of, option, param, show
 from mesokit.case.describe.hints import Either, Many
 from mesokit.case.registry import family
 from mesokit.geometry.region import Region
-from mesokit.method.mpcd.body.inertia import Solid, solid_of
+
+if TYPE_CHECKING:
+    from mesokit.method.mpcd.body.inertia import Solid
 
 Floats = NDArray[np.float64]
 Direction = Literal["x", "y", "z", "orientation"]
@@ -224,6 +226,8 @@ class Body(ABC):
 
 @functools.lru_cache(maxsize=64)
 def _solid(region: Region, planar: bool) -> Solid:
+    from mesokit.method.mpcd.body.inertia import solid_of
+
     return solid_of(region, planar)
 
 

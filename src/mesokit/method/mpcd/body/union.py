@@ -29,10 +29,10 @@ class UnionBody(Body):
                 raise ValueError(f"parts[#{i}].fluid = 'inside': expected a solid")
 
     def region(self) -> Region:
-        return region.union(body_region(part) for part in self.parts)
+        return region.union(region_of_part(part) for part in self.parts)
 
 
-def body_region(part: Simple) -> Region:
+def region_of_part(part: Simple) -> Region:
     """A shape as part of a body."""
     d = 2 if part.dimensions == (2,) else 3
     return part.body(Room((1,) * d, (False,) * d))
@@ -40,4 +40,4 @@ def body_region(part: Simple) -> Region:
 
 def moves(part: Simple) -> bool:
     """Whether a shape can be part of a body: it is convex, and has an end."""
-    return all(len(term) == 1 and MOVABLE[term[0].code] for term in body_region(part))
+    return all(len(term) == 1 and MOVABLE[term[0].code] for term in region_of_part(part))

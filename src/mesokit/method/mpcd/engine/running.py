@@ -247,6 +247,8 @@ class Running(ABC):
     images = _read(Readings.images)
     masses = _read(Readings.masses)
     species = _read(Readings.species)
+    spins = _read(Readings.spins)
+    orientations = _read(Readings.orientations)
     bonds = _read(Readings.bonds)
     bond_vectors = _read(Readings.bond_vectors)
     sums_of_particles = _read(ByPieces.sums_of_particles, ByPieces)

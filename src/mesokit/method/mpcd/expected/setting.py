@@ -243,9 +243,27 @@ def driven(case: Case) -> bool:
 
 def flowing(case: Case) -> bool:
     """Whether anything makes the fluid flow: a magnetic field leaves it in equilibrium."""
+    return flows_by_itself(case) or stirred(case)
+
+
+def gives_momentum(case: Case) -> bool:
+    """Whether anything but bodies gives momentum to fluid and solutes, or takes it."""
+    return flows_by_itself(case) or magnetic(case)
+
+
+def flows_by_itself(case: Case) -> bool:
+    """Whether anything but bodies makes the fluid flow."""
     moving = any(surface.moves for wall in case.walls for surface in wall.surfaces().values())
     held = case.solutes is not None and bool(case.solutes.pulls or case.solutes.traps)
     return bool(case.box.sheared or case.fluid.force.acts or moving or held)
+
+
+def stirred(case: Case) -> bool:
+    """Whether bodies swim, or forces and torques move them."""
+    return any(
+        kind.swim is not None or np.any(kind.force or 0.0) or np.any(kind.torque or 0.0)
+        for kind in case.bodies
+    )
 
 
 MAGNETIC = "no theory of motion in a magnetic field"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
 from mesokit.case.component import component, tag
-from mesokit.method.mpcd.columns import in_random_solvent, temperature
+from mesokit.method.mpcd.columns import freedoms, holds, in_random_solvent, temperature
 from mesokit.method.mpcd.expected import setting
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.method import method_of
@@ -27,8 +27,9 @@ class Conservation(Observable):
     """Number, momentum, kinetic energy and temperature of the whole fluid in time.
 
     The temperature is that of the motion about the mean velocity, flow included. Fluids of
-    molecules and solutes have a potential energy as well. Solutes count as particles; in a random
-    solvent they are all there is.
+    molecules and solutes have a potential energy as well. Solutes and bodies that move count as
+    particles; in a random solvent solutes are all there is. Bodies turn, too, which adds to the
+    energy; their virtual particles exchange energy with them.
     """
 
     quantity: Literal["conservation"] = tag("conservation")
@@ -49,12 +50,11 @@ class ConservationAccumulator(BlockAccumulator):
         case = self.case
         self.dimension = case.box.dimension
         self.bonded = case.fluid.molecule is not None or case.solutes is not None
-        driven, self.in_random_solvent = (
-            setting.driven(case),
-            in_random_solvent(case),
-        )  # of a random solvent
-        self.conserves_momentum = not (case.walls or driven or self.in_random_solvent)
-        self.conserves_energy = self.conserves_momentum and not setting.isothermal(case)
+        self.in_random_solvent = in_random_solvent(case)
+        taken = bool(case.walls) or self.in_random_solvent or holds(case)
+        self.conserves_momentum = not (taken or setting.gives_momentum(case))
+        changes = setting.isothermal(case) or bool(case.bodies)
+        self.conserves_energy = self.conserves_momentum and not changes
         # number, momentum, the potential energy of bonds and pairs, kinetic energy, temperature
         width = 3 + self.dimension + self.bonded
         self.blocks = Blocks((width,))
@@ -153,17 +153,19 @@ class ConservationAccumulator(BlockAccumulator):
     def _held_energy(self) -> tuple[float, Array]:
         """Kinetic energy and momentum of the steady flow of a fluid at kT, nan without theory."""
         case, d = self.case, self.dimension
-        mass, free = setting.superficial_mass(case), not (case.walls or self.in_random_solvent)
+        held = case.walls or self.in_random_solvent or holds(case)
+        mass = setting.superficial_mass(case)
         squares, momentum = 0.0, np.zeros(d)
         for axis in range(d):
             flow = setting.flow(case, axis)
-            if flow.profile is None or (setting.driven(case) and setting.obstructed(case)):
+            among = setting.obstructed(case) or bool(case.bodies)
+            if flow.profile is None or (setting.driven(case) and among):
                 return np.nan, momentum
             edges = np.linspace(0.0, case.box.size[flow.across], 65)
             speeds = setting.bin_average(flow.profile, edges)
             squares += float((speeds**2).mean())
             momentum[axis] = mass * float(speeds.mean())
-        thermal = d * (self.first[0] - free) * case.fluid.kT
+        thermal = freedoms(case, int(self.first[0]), free=not held) * case.fluid.kT
         return 0.5 * float(thermal + mass * squares), momentum
 
     def _not_steady(self) -> str:
@@ -177,6 +179,8 @@ class ConservationAccumulator(BlockAccumulator):
         """Of the steady flow, or of a fluid that nothing holds; nan where there is no theory."""
         case, flow = self.case, setting.flow(self.case, axis)
         mass = setting.superficial_mass(case)
+        if case.bodies:
+            return np.nan
         if flow.kind == "accelerating" and not case.walls:
             acceleration = float(setting.uniform_acceleration(case)[axis])
             return self.first[1 + axis] + mass * acceleration * since

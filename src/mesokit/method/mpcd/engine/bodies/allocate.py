@@ -16,6 +16,7 @@ from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.state import MovingBodies
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
+from mesokit.method.mpcd.groups import fluid_mass_density
 from mesokit.scalar.pointer import address
 
 FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
@@ -30,11 +31,6 @@ def masses_of(case: Case) -> Floats:
     """Mass of a body of each kind."""
     d, density = case.box.dimension, fluid_mass_density(case)
     return np.array([kind.mass_in(d, density) for kind in case.bodies])
-
-
-def fluid_mass_density(case: Case) -> float:
-    """Mass of the fluid per volume."""
-    return float(sum(kind.density * kind.mass for kind in case.fluid.kinds))
 
 
 def balancing_pull(case: Case) -> tuple[float, ...]:
@@ -126,7 +122,8 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int) -> MovingBodies:
     """Bodies at rest at 0, and room for all that their steps need."""
     case, d = numbers.case, numbers.dimension
     fluid, box = case.fluid, case.box
-    masses, kinds, parts = masses_of(case), [], []
+    masses, kinds = masses_of(case), []
+    parts: list[Any] = []
     for kind, mass in zip(case.bodies, masses.tolist(), strict=True):
         kinds.append(row_of(kind, mass, case, len(parts)))
         parts += kind.solid(d).parts

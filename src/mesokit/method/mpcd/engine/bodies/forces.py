@@ -13,6 +13,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     DISPLACED,
     EVERY_BODY,
     FIRST_PART,
+    FORCE_GIVEN,
     FOUR,
     HOME,
     IN_BODY_FRAME,
@@ -20,14 +21,13 @@ from mesokit.method.mpcd.engine.bodies.state import (
     MASS,
     PARTS_END,
     PLACE,
-    FORCE_GIVEN,
     RADIUS,
     RANGE,
     SPRING,
     THREE,
+    TORQUE_GIVEN,
     TOWARDS,
     TURN,
-    TORQUE_GIVEN,
     image_near,
     load,
     of_kind,
@@ -50,7 +50,10 @@ CLOSE = 1e-9  # cells: two steps of a search that differ by less have arrived
 def forces_on(bodies, physics, box, i, zero):
     """Force and torque on body i where it is."""
     kind, q, x = bodies.kind[i], load(bodies.rows, i, TURN, FOUR), load(bodies.rows, i, PLACE, zero)
-    force, torque = load(bodies.kinds, kind, FORCE_GIVEN, zero), load(bodies.kinds, kind, TORQUE_GIVEN, THREE)
+    force, torque = (
+        load(bodies.kinds, kind, FORCE_GIVEN, zero),
+        load(bodies.kinds, kind, TORQUE_GIVEN, THREE),
+    )
     if bodies.kinds[kind, IN_BODY_FRAME] > 0.5:
         force, torque = rotated(q, force), rotated(q, torque)
     # The fluid's force acts on it as on the fluid in its place; all that balances other forces is

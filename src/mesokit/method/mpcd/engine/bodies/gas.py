@@ -46,9 +46,9 @@ from mesokit.method.mpcd.engine.bodies.state import (
     TURN,
     load,
     of_kind,
+    rotated_back,
     store,
     swept,
-    rotated_back,
     with_shear,
 )
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
@@ -81,12 +81,11 @@ HALF_DIAGONAL = 0.5 * math.sqrt(3.0)
 @stage
 def draw_all_gas(worker, now, physics, fluid, bodies):
     """Draw the gas of all bodies at t + dt, and add it to the sums of its cells."""
-    thread, zero = worker.thread, physics.zero
-    here = bodies.counters[thread]
+    thread, here = worker.thread, bodies.counters[worker.thread]
     here[GAS_COUNT] = 0
-    # First the gas of this thread's part of each body: places, thermal velocities, and the sums that
-    # say how much of their noise is that of the body. A body is solved by one thread. Then each
-    # thread completes its own particles and adds them to its own sums of cells.
+    # First the gas of this thread's part of each body: places, thermal velocities, and the sums
+    # that say how much of their noise is that of the body. A body is solved by one thread. Then
+    # each thread completes its own particles and adds them to its own sums of cells.
     for i in range(len(bodies.rows)):
         if of_kind(bodies, i, FILLED) > 0.0:
             for copy in range(3 if slides(now.box) else 1):
@@ -259,6 +258,6 @@ def take_recoil(worker, now, physics, fluid, bodies):
         add_integers(taken[len(zero) :], added_quanta(turn, scale, integers(turn)))
     barrier(worker)
     low, high = share(len(bodies.rows), thread, worker.threads)
-    for i in range(low, high):
-        take_impulses(worker, physics, bodies, i)
+    for body in range(low, high):
+        take_impulses(worker, physics, bodies, body)
     barrier(worker)

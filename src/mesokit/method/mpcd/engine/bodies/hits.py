@@ -80,11 +80,11 @@ from mesokit.method.mpcd.engine.bodies.state import (
     load,
     of_kind,
     place_at,
-    spin_of,
-    store,
     rigid_velocity,
     rotated,
     rotated_back,
+    spin_of,
+    store,
     with_shear,
 )
 from mesokit.method.mpcd.engine.bodies.swim import squirming
@@ -124,7 +124,7 @@ def reflect_all(worker, now, physics, fluid, bodies):
     if not now.flags & STREAM:
         return
     thread, here = worker.thread, bodies.counters[worker.thread]
-    mine, first = here[COUNT], 0
+    mine = here[COUNT]
     low, high = share(len(bodies.rows), thread, worker.threads)
     scales = physics_scales(bodies, physics)
     bodies.sums[thread] = 0
@@ -202,7 +202,7 @@ def find_hit(worker, now, physics, fluid, bodies, j, n, trial):
     impulse = bodies.waste[thread] if trial else fluid.taken.impulse[thread]
     m, number = mass_of_lane(physics, fluid.particles, lane), fluid.particles.ident[lane]
     flight = Flight(box, cell, left, where_from, begin, a)
-    draws = Draws(now.counter, number, m, n * BLOCK)
+    draws = RandomHits(now.counter, number, m, n * BLOCK)
     time, i, r, v = to_body(physics, bodies, flight, draws, r, v, impulse)
     values[j, TIME] = time
     numbers[thread, j, BODY] = i
@@ -311,7 +311,7 @@ class Flight(NamedTuple):
     a: tuple
 
 
-class Draws(NamedTuple):
+class RandomHits(NamedTuple):
     """What random reflections by walls depend on: the step, the particle, its mass, and the first
     number of a hit."""
 

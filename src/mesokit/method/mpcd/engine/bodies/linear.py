@@ -1,11 +1,10 @@
 """Small symmetric matrices of a body, in scratch memory: the reflection and the noise of its gas.
 
-Velocity and angular velocity of a body are one vector U of D = 3 numbers in 2D and 6 in 3D. Arms are
-counted in levers (see `MovingBodies`), so that all numbers have one scale. Matrices are D x D.
+Velocity and angular velocity of a body are one vector U of D = 3 numbers in 2D and 6 in 3D. Arms
+are counted in levers (see `MovingBodies`), so that all numbers have one scale. Matrices are D x D.
 """
 
 import math
-
 
 from mesokit.method.mpcd.engine.bodies.state import (
     END_TURN,
@@ -194,7 +193,7 @@ def solve_noise(bodies, i, t, d, scales, work):
     for a in range(size):
         for b in range(size):
             work[E + size * a + b] = 1.0 if a == b else 0.0
-    # Jacobi's method: turn pairs of axes until A is diagonal. E then has the eigenvectors as columns.
+    # Jacobi's method: turn pairs of axes until A is diagonal. Columns of E are eigenvectors then.
     for _ in range(SWEEPS):
         rest = 0.0
         for a in range(size):

@@ -105,7 +105,11 @@ def kick_body(bodies, physics, box, i, time):
 def drift_body(bodies, physics, i, time):
     """Straight path and free turn of body i."""
     rows, zero = bodies.rows, physics.zero
-    v, spin, q = load(rows, i, VELOCITY, zero), load(rows, i, SPIN, THREE), load(rows, i, TURN, FOUR)
+    v, spin, q = (
+        load(rows, i, VELOCITY, zero),
+        load(rows, i, SPIN, THREE),
+        load(rows, i, TURN, FOUR),
+    )
     store(rows, i, PLACE, added_scaled(load(rows, i, PLACE, zero), time, v))
     hinged = of_kind(bodies, i, HINGED) > 0.5
     if of_kind(bodies, i, IS_BALL) > 0.5 or hinged or len(zero) == 2:  # its axis stays
@@ -165,7 +169,9 @@ def angle_over_tangent(t):
     """arctan(t) / t: the series for half of the angle, which is small enough."""
     u = 1.0 / (1.0 + math.sqrt(1.0 + t * t))
     z = (t * u) * (t * u)
-    series = 1.0 + z * (-1.0 / 3.0 + z * (1.0 / 5.0 + z * (-1.0 / 7.0 + z * (1.0 / 9.0 - z / 11.0))))
+    series = 1.0 + z * (
+        -1.0 / 3.0 + z * (1.0 / 5.0 + z * (-1.0 / 7.0 + z * (1.0 / 9.0 - z / 11.0)))
+    )
     return 2.0 * u * series
 
 
@@ -216,7 +222,7 @@ def tumble(bodies, counter, i, time, planar):
     rate = of_kind(bodies, i, TUMBLES)
     if rate == 0.0:
         return
-    a, b, c, d = words(counter, BODY_TUMBLE, i, 0)
+    a, b, c, _ = words(counter, BODY_TUMBLE, i, 0)
     if unit_open(a) < rate * time:
         s, co = sincos_turn(unit_open(b))
         height = 1.0 - 2.0 * unit_open(c)

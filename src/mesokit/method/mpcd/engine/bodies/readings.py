@@ -79,6 +79,11 @@ class BodyReadings:
         return x
 
     @property
+    def images(self) -> NDArray[np.int32]:
+        """Boxes that each is away (bodies, d)."""
+        return self._columns(BOXES).astype(np.int32)
+
+    @property
     def velocities(self) -> Floats:
         """Velocities (bodies, d)."""
         return self._columns(VELOCITY)
@@ -159,7 +164,9 @@ class BodyReadings:
     def inside(self, places: Floats) -> NDArray[np.bool_]:
         """Which of places (n, d) are in a body."""
         found, zero = np.zeros(len(places), bool), self.memory.physics.zero
-        mark_inside(ALONE, self.memory.box, self.state_of, zero, np.ascontiguousarray(places), found)
+        mark_inside(
+            ALONE, self.memory.box, self.state_of, zero, np.ascontiguousarray(places), found
+        )
         return found
 
     def state(self) -> dict[str, NDArray[Any]]:
@@ -205,4 +212,3 @@ def mark_inside(worker, box, bodies, zero, places, found):
             cell = np.int64(EVERY_BODY)
         depth, _ = deepest(box, bodies, cell, r)
         found[n] = depth < 0.0
-

@@ -68,19 +68,19 @@ class MovingBodies(NamedTuple):
     mass_scale: whole numbers per unit of mass in sums; cells, density: of the fluid;
     substeps: of the motion of bodies.
     lever: a power of two not below the largest radius: arms are counted in it. further: what walls
-    may add to the path of a particle in a timestep. twice: 1 where hits are found once more with the mean motion, else 0.
+    may add to the path of a particle in a timestep. twice: 1 where hits are found once more with
+    the mean motion, else 0.
     grid: cells of the box, without shift; halves: cubes of half the size; cubes (threads, LANES):
-    scratch memory; near_count (cells + 1,), near (cells + 1,
-    MOST_NEAR_CELL): the bodies near each; clear (cubes + 1,): the distance that is clear around each
-    cube. partner_count (bodies,), partners (bodies,
-    MOST_PARTNERS): other bodies that may come near.
+    scratch memory; near_count (cells + 1,), near (cells + 1, MOST_NEAR_CELL): the bodies near each
+    cell; clear (cubes + 1,): the distance that is clear around each cube. partner_count (bodies,),
+    partners (bodies, MOST_PARTNERS): other bodies that may come near.
     values (threads, most, NEAR_COLUMNS), numbers (threads, most, NEAR_NUMBERS): particles near.
     sums (threads, bodies, SUMS): of the hits in hand; taken (threads, bodies, 6): impulses, in
     whole numbers. gas (threads, most, GAS_COLUMNS): virtual particles, each of gas_mass;
     gas_number, gas_cell, gas_body (threads, most): number, cell and body of each.
-    counters (threads, COUNTERS);
-    faults (threads, 8): the first thing that goes wrong; work (threads, WORK); chosen (threads, LANES): scratch memory;
-    waste: what walls take by flights that do not count.
+    counters (threads, COUNTERS); faults (threads, 8): the first thing that goes wrong; work
+    (threads, WORK), chosen (threads, LANES): scratch memory; waste: what walls take by flights that
+    do not count.
     solid: walls as the potential of gaps sees them, or (). pull: the uniform acceleration of all
     that balances forces on bodies.
     """

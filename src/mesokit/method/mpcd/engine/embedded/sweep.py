@@ -70,6 +70,9 @@ def put_back(worker, now, physics, fluid, beads):
         thread, zero = worker.thread, physics.zero
         for n in range(embedded.number[thread, COUNT]):
             at = np.uint64(n * len(zero))
-            r, v = load_values(embedded.r[thread], at, zero), load_values(embedded.v[thread], at, zero)
+            r, v = (
+                load_values(embedded.r[thread], at, zero),
+                load_values(embedded.v[thread], at, zero),
+            )
             start = load_values(embedded.start[thread], at, zero)
             put_one(worker, now, physics, fluid, embedded.lane[thread, n], start, r, v)

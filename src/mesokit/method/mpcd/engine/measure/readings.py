@@ -55,7 +55,7 @@ class Readings:
         self._seen.clear()
 
     def totals(self) -> tuple[int, Floats, float]:
-        """Number of particles, momentum (d,) and kinetic energy, beads of solutes and bodies included."""
+        """Number of particles, momentum (d,) and kinetic energy, beads and bodies included."""
         number, sums = self.n, self.motion()
         if self.solutes is not None:
             number, sums = number + self.solutes.shape[0], sums + self.solutes.motion()
@@ -155,28 +155,54 @@ class Readings:
         return self._gather(ids, False).images
 
     def masses(self, ids: NDArray | None = None) -> Floats:
-        """Masses (n,) by particle id: kinds are numbered one after the other, then come solutes."""
+        """Masses (n,) by particle id: of kinds one after the other, then solutes, then bodies."""
         ids = self._all_beads(ids)
         if ids is None:
             return self.numbers.masses()
-        mass, beads = np.zeros(len(ids)), np.asarray(ids) >= self.n
-        mass[~beads] = self.numbers.masses_of(ids[~beads])
-        if beads.any() and self.solutes is not None:
-            every = np.broadcast_to(self.solutes.masses(), self.solutes.shape[:1])
-            mass[beads] = every[ids[beads] - self.n]
+        mass, others = np.zeros(len(ids)), np.asarray(ids) >= self.n
+        mass[~others] = self.numbers.masses_of(ids[~others])
+        if others.any():
+            found = []
+            if self.solutes is not None:
+                found.append(np.broadcast_to(self.solutes.masses(), self.solutes.shape[:1]))
+            if self.bodies is not None:
+                found.append(self.bodies.masses)
+            mass[others] = np.concatenate(found)[ids[others] - self.n]
         return mass
 
     def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
         """Kind of each particle (n,), by particle id: its place in fluid.species, then those of
-        solutes.polymers."""
+        solutes.polymers and of bodies."""
         ids = self._all_beads(ids)
         if ids is None:
             return self.numbers.kinds()
         kind = self.numbers.kinds_of(np.minimum(ids, max(self.n - 1, 0)))
-        beads = ids >= self.n
-        if beads.any() and self.solutes is not None:
-            kind[beads] = len(self.numbers.counts) + self.solutes.kinds()[ids[beads] - self.n]
+        others = ids >= self.n
+        if others.any():
+            found, before = [], len(self.numbers.counts)
+            if self.solutes is not None:
+                found.append(before + self.solutes.kinds())
+                before += len(self.numbers.case.solutes.polymers)
+            if self.bodies is not None:
+                found.append(before + self.bodies.kinds)
+            kind[others] = np.concatenate(found)[ids[others] - self.n]
         return kind
+
+    def orientations(self, ids: NDArray) -> Floats:
+        """Unit quaternions (n, 4) of bodies, by particle id."""
+        bodies, rows = self._rows_of_bodies(ids)
+        return bodies.orientations[rows]
+
+    def spins(self, ids: NDArray) -> Floats:
+        """Angular velocities of bodies, by particle id: (n,) about z in 2D, (n, 3) in 3D."""
+        bodies, rows = self._rows_of_bodies(ids)
+        found = bodies.spins[rows]
+        return found[:, 2] if self.dimension == 2 else found
+
+    def _rows_of_bodies(self, ids: NDArray) -> tuple[BodyReadings, NDArray[np.int64]]:
+        assert self.bodies is not None
+        beads = self.solutes.shape[0] if self.solutes is not None else 0
+        return self.bodies, np.asarray(ids) - (self.n + beads)
 
     def bonds(self) -> NDArray[np.int64]:
         """Particle ids (bonds, 2) of all pairs that are linked; molecule after molecule, those of
@@ -230,19 +256,35 @@ class Readings:
         return between(r, image, first, second, self.numbers.box, self.memory.box)
 
     def _gather(self, ids: NDArray | None, unwrapped: bool) -> Observed:
-        """Places, velocities, images by particle id; those of beads of solutes follow the fluid."""
+        """Places, velocities, images by particle id: beads of solutes follow the fluid, then come
+        bodies."""
         ids = self._all_beads(ids)
-        if self.solutes is None or ids is None or (ids < self.n).all():
+        if ids is None or (ids < self.n).all():
             return self._gather_fluid(ids, unwrapped)
         own = ids < self.n
-        r, v, image = self.solutes.folded()
-        if unwrapped:
-            r, v = self.solutes.places, self.solutes.velocities
-        beads = np.where(own, 0, ids - self.n)
-        r, v, image = r[beads], v[beads], image[beads]
+        others = np.where(own, 0, ids - self.n)
+        seen = self._gather_others(unwrapped)
+        r, v, image = seen.positions[others], seen.velocities[others], seen.images[others]
         if own.any():
             r[own], v[own], image[own] = self._gather_fluid(ids[own], unwrapped)
         return Observed(r, v, image)
+
+    def _gather_others(self, unwrapped: bool) -> Observed:
+        """All beads of solutes, then all bodies."""
+        found = []
+        if self.solutes is not None:
+            r, v, image = self.solutes.folded()
+            if unwrapped:
+                r, v = self.solutes.places, self.solutes.velocities
+            found.append(Observed(r, v, image))
+        if self.bodies is not None:
+            one = self.bodies
+            found.append(Observed(one.places(unwrapped), one.velocities, one.images))
+        return Observed(
+            np.concatenate([one.positions for one in found]),
+            np.concatenate([one.velocities for one in found]),
+            np.concatenate([one.images for one in found]),
+        )
 
     def _all_beads(self, ids: NDArray | None) -> NDArray | None:
         """The same ids; in a random solvent, which has no particles, None stands for all beads."""

@@ -18,7 +18,7 @@ from mesokit.method.mpcd.engine.cpu.strips.rows import (
 )
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
 from mesokit.method.mpcd.engine.where import where
-from mesokit.scalar.jit import optional, scalar, seldom
+from mesokit.scalar.jit import optional, seldom
 from mesokit.scalar.vector import added_scaled
 
 

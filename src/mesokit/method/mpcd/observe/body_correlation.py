@@ -1,0 +1,137 @@
+"""Correlation of the velocity, the angular velocity or the orientation of bodies at two times."""
+
+import math
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from mesokit.case.case import Case
+from mesokit.case.component import component, option, param, tag
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected.bodies import KIND_OF_BODY, followed
+from mesokit.method.mpcd.expected.setting import quiet_axes
+from mesokit.observe.shared.fitted import fitted_number
+from mesokit.observe.shared.origins import Origins
+from mesokit.seam.estimate import Estimate
+from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.result import Array, Comparison, Result
+
+LABELS = {
+    "velocity": "velocity autocorrelation",
+    "angular velocity": "angular-velocity autocorrelation",
+    "orientation": "orientation correlation",
+}
+UNITS = {"velocity": "a^2/tau^2", "angular velocity": "1/tau^2", "orientation": ""}
+
+
+@component
+class BodyCorrelation(Observable):
+    """Mean product of the velocity of a body at two times, or of its angular velocity, one
+    component; or of its direction, which is the cosine of the angle that it has turned through.
+
+    Velocities begin at kT/M (1 - M/M_all) where the momentum of all is zero, angular velocities at
+    kT/I; their integrals are diffusion coefficients. Axes along which the fluid flows or that a
+    wall closes are left out. The direction is that of axis x of the body: in d dimensions it is
+    forgotten as exp(-(d - 1) D_r t).
+    """
+
+    quantity: Literal["body-correlation"] = tag("body-correlation")
+    drawing = "memory"
+    of: Literal["velocity", "angular velocity", "orientation"] = param(
+        "velocity", doc="what is remembered"
+    )
+    kind: int | str = param(1, doc=KIND_OF_BODY)
+    every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
+    max_lag: int = param(200, doc="longest lag", unit="steps", ge=1)
+
+    def axes(self, case: Case) -> tuple[int, ...]:
+        """Axes that count. Raises CaseError without any, or without such bodies."""
+        kind = followed(case, self.quantity, self.kind)
+        if self.of == "velocity":
+            found = tuple(axis for axis in quiet_axes(case) if axis in kind.moving)
+        else:
+            found = kind.turning
+        if not found:
+            moves = "moves along" if self.of == "velocity" else "turns about"
+            raise CaseError(f"of = {self.of!r}: {kind.name} {moves} no axis freely")
+        return tuple(range(case.box.dimension)) if self.of == "orientation" else found
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without bodies that move or turn so."""
+        self.axes(case)
+
+
+def _product(old: Array, new: Array) -> Array:
+    return np.asarray(np.einsum("ij,ij->i", old, new))
+
+
+@accumulator_of(BodyCorrelation)
+class BodyCorrelationAccumulator(BlockAccumulator):
+    """Velocities, angular velocities or directions at many origins."""
+
+    memory: ClassVar[tuple[str, ...]] = ("origins",)
+
+    def prepare(self) -> None:
+        observable = self.observable
+        self.of = followed(self.case, observable.quantity, observable.kind)
+        self.axes = list(observable.axes(self.case))
+        max_lag = max(1, observable.max_lag // observable.every)
+        self.origins = Origins(self.of.number, len(self.axes), max_lag)
+
+    def observe(self, fluid: Any) -> None:
+        bodies, of = fluid.bodies, self.observable.of
+        if of == "velocity":
+            remembered = bodies.velocities
+        else:
+            remembered = bodies.headings if of == "orientation" else bodies.spins
+        self.origins.add(remembered[self.of.rows][:, self.axes], _product)
+
+    def result(self) -> Result:
+        of, kept = self.observable.of, self.origins.estimate()
+        if of != "orientation":
+            kept = kept.divided(len(self.axes))
+        time = self.origins.sampled() * self.observable.every * self.case.fluid.timestep
+        given = self.decay(time, kept) if of == "orientation" else self.level(time, kept)
+        return self.report(
+            {"time": time},
+            kept,
+            list(given),
+            label=f"{LABELS[of]} of {self.of.name}",
+            drawing="curve" if of == "orientation" else "memory",
+            units={"value": UNITS[of], "time": "tau"},
+            samples=self.origins.count,
+        )
+
+    def level(self, time: Array, kept: Estimate) -> Iterator[Comparison]:
+        """Equipartition, and the diffusion coefficient."""
+        n, turns = len(time), self.observable.of == "angular velocity"
+        if not n:
+            return
+        known = self.of.spin_square() if turns else self.of.velocity_square()
+        first = np.eye(n)[0]
+        value, error = kept.total(first)
+        error = self.of.with_start(error, value, self.origins.series)
+        yield Comparison("value at lag 0", value, error, known, UNITS[self.observable.of])
+        if n < 3:
+            return
+        trapezoid = np.zeros(n)
+        trapezoid[1:] += np.diff(time) / 2
+        trapezoid[:-1] += np.diff(time) / 2
+        expected, note = self.of.rotational_diffusion() if turns else self.of.diffusion()
+        what = f"{'rotational ' * turns}diffusion coefficient up to {time[-1]:g} tau"
+        unit = "1/tau" if turns else "a^2/tau"
+        yield Comparison(what, *kept.total(trapezoid), expected, unit, note)
+
+    def decay(self, time: Array, kept: Estimate) -> Iterator[Comparison]:
+        """The rotational diffusion coefficient, from the lag at which 1/e is left, or nearly."""
+        use = np.flatnonzero((kept.value > 0) & (time > 0))
+        if not len(use):
+            return
+        at = use[abs(np.log(kept.value[use]) + 1).argmin()]
+        rate = (self.case.box.dimension - 1) * float(time[at])
+        value, left = -math.log(kept.value[at]) / rate, float(kept.value[at])
+        _, error = kept.scalar(value, -np.eye(len(time))[at] / (left * rate))
+        expected, note = self.of.rotational_diffusion()
+        what = "rotational diffusion coefficient"
+        yield fitted_number(what, value, error, expected, "1/tau", note)

@@ -1,0 +1,263 @@
+"""What is measured of bodies that move in a fluid."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import mesokit
+from mesokit import BodyCorrelation, BodyDisplacement, BodyDrift, BodyMotion, BodyTracks, CaseError
+from mesokit.method.mpcd.body.disk import DiskBody
+from mesokit.method.mpcd.expected.bodies import every_kind, followed
+from mesokit.report.figures import plot
+from mesokit.run.simulation import Simulation
+from tests.helpers.moving_disks import LATTICE, moving_disks, with_a_plank
+
+STEP = 0.1
+PLANKS = {"kind": "planks"}
+OBSERVABLES = (BodyCorrelation, BodyDisplacement, BodyDrift, BodyMotion, BodyTracks)
+
+
+class Scripted:
+    """Four bodies, the last of another kind: each has a velocity and turns at a rate."""
+
+    def __init__(self, velocity, rate):
+        self.velocity, self.rate = np.array(velocity, float), np.array(rate, float)
+        self.time, self.step, self.bodies, self.number = 0.0, 0, self, 4
+        self.masses = np.ones(4)
+
+    def advance(self):
+        self.step, self.time = self.step + 1, STEP * (self.step + 1)
+
+    def places(self, unwrapped):
+        assert unwrapped
+        return 1.0 + self.time * self.velocities
+
+    def _about_z(self, values):
+        return np.stack([0 * values, 0 * values, values], axis=1)
+
+    def in_own_frame(self, vectors):
+        return vectors
+
+    def counts(self):
+        return {"second hits": 3, "put back": self.step % 2}
+
+    def totals(self):
+        return 104, np.zeros(2), 0.5 * (2 * 100 + 7)
+
+    def motion(self):
+        return np.array([0.0, 0.0, 7.0])
+
+    @property
+    def headings(self):
+        turned = self.rate * self.time
+        return np.stack([np.cos(turned), np.sin(turned)], axis=1)
+
+    velocities = property(lambda self: self.velocity)
+    spins = property(lambda self: self._about_z(self.rate))
+    angles = property(lambda self: self._about_z(self.rate * self.time))
+    forces = property(lambda self: 2 * self.velocity)
+    torques = property(lambda self: self._about_z(3 * self.rate))
+
+
+def seen(observable, case=None, velocity=((1, 0), (0, 2), (-1, 1), (0.5, 0)), rate=(1, 1, 1, 2)):
+    """The result of bodies that move so for 40 steps."""
+    case = with_a_plank(observe=[observable]) if case is None else case
+    accumulator, bodies = observable.accumulator(case), Scripted(velocity, rate)
+    for _ in range(40):
+        accumulator.observe(bodies)
+        bodies.advance()
+    return accumulator.result()
+
+
+@pytest.mark.parametrize("kind", OBSERVABLES)
+def test_they_need_bodies(kind):
+    with pytest.raises(CaseError, match="needs bodies that move in the fluid"):
+        moving_disks(bodies=(), observe=[kind()])
+
+
+def test_a_kind_is_found_by_its_name_or_number():
+    case = with_a_plank()
+    one, other = every_kind(case, "this")
+    assert (one.name, one.number, one.rows) == ("disks", 3, slice(0, 3))
+    assert (other.name, other.mass, other.rows) == ("planks", 60, slice(3, 4))
+    assert other.moments[2] == pytest.approx(60 * (4**2 + 2**2) / 12)
+    assert followed(case, "this", "planks").place == followed(case, "this", 2).place == 1
+    for unknown in (0, 3, "plank"):
+        with pytest.raises(CaseError, match="expected 'disks', 'planks', 1 or 2"):
+            with_a_plank(observe=[BodyDrift(kind=unknown)])
+
+
+def test_tracks_have_all_that_a_body_does():
+    result = seen(BodyTracks(**PLANKS))
+    names = [
+        "x", "y", "heading x", "heading y", "angle", "vx", "vy", "spin", "force x", "force y",
+        "torque",
+    ]  # fmt: skip
+    assert result.x["component"].tolist() == names and result.value.shape == (40, 1, 11)
+    t = result.x["time"]
+    rows = [
+        1 + 0.5 * t, 1 + 0 * t, np.cos(2 * t), np.sin(2 * t), 2 * t, 0.5 + 0 * t, 0 * t,
+        2 + 0 * t, 1 + 0 * t, 0 * t, 6 + 0 * t,
+    ]  # fmt: skip
+    np.testing.assert_allclose(result.value[:, 0], np.transpose(rows), atol=1e-12)
+    assert seen(BodyTracks(bodies=2)).x["body"].tolist() == [1, 2]
+    assert plot(result).axes[0].get_xlabel().startswith("$x$")
+
+
+def test_displacements_of_free_flights():
+    result = seen(BodyDisplacement(max_lag=20))
+    t = result.x["time"]
+    np.testing.assert_allclose(result.value, (1 + 4 + 2) / 3 * t**2, atol=1e-12)
+    assert result.extra["components"] == "xy"
+    result = seen(BodyDisplacement(of="angles", max_lag=20, **PLANKS))
+    np.testing.assert_allclose(result.value, 4 * t**2, atol=1e-12)
+    assert result.extra["components"] == "z" and result.units["value"] == ""
+    label = plot(result).axes[0].get_ylabel()
+    assert label == "mean square angular displacement"
+
+
+def walked(observable, steps, size):
+    """The result of bodies that forget where they go, and turn, at each step."""
+    case = moving_disks(observe=[observable])
+    accumulator, rng = observable.accumulator(case), np.random.default_rng(2)
+    bodies = Scripted(np.zeros((4, 2)), np.zeros(4))
+    place, angle = np.zeros((4, 2)), np.zeros(4)
+    for _ in range(steps):
+        place += size * rng.normal(size=(4, 2))
+        angle += size * rng.normal(size=4)
+        bodies.velocity, bodies.rate, bodies.time = place, angle, 1.0
+        accumulator.observe(bodies)
+    return accumulator.result()
+
+
+@pytest.mark.parametrize("of", ["places", "angles"])
+def test_the_slope_is_the_diffusion_coefficient(of):
+    result = walked(BodyDisplacement(of=of, max_lag=20), 1000, 0.1)
+    [found] = result.comparisons
+    expected = 0.1**2 / (2 * STEP)
+    assert found.what == "rotational " * (of == "angles") + "diffusion coefficient"
+    assert abs(found.measured - expected) < 4 * found.error < expected
+
+
+def test_the_direction_is_forgotten_at_the_rate_of_rotational_diffusion():
+    result = walked(BodyCorrelation(of="orientation", max_lag=80), 2000, 0.2)
+    [found] = result.comparisons
+    expected = 0.2**2 / (2 * STEP)
+    assert abs(found.measured - expected) < 4 * found.error < 2 * expected
+    assert result.value[0] == pytest.approx(1)
+
+
+def test_correlations_of_steady_motion():
+    result = seen(BodyCorrelation(max_lag=20))
+    np.testing.assert_allclose(result.value, (1 + 4 + 2) / 3 / 2)  # a component
+    t = result.x["time"]
+    assert result["diffusion"].measured == pytest.approx(7 / 6 * t[-1])
+    share = 1 - DISKS_MASS / ALL_MASS
+    assert result["value at lag 0"].expected == pytest.approx(share / DISKS_MASS)
+    result = seen(BodyCorrelation(of="angular velocity", max_lag=20))
+    np.testing.assert_allclose(result.value, 1)
+    assert result["value at lag 0"].expected == pytest.approx(2 / (DISKS_MASS * 1.5**2))
+    result = seen(BodyCorrelation(of="orientation", max_lag=20, **PLANKS))
+    np.testing.assert_allclose(result.value, np.cos(2 * t), atol=1e-12)
+
+
+DISKS_MASS = 5 * np.pi * 1.5**2
+ALL_MASS = round(5 * (14**2 - 3 * np.pi * 1.5**2 - 8)) + 3 * DISKS_MASS + 60
+
+
+def test_motion_over_that_of_equipartition():
+    result = seen(BodyMotion())
+    disks, planks = result.value
+    assert disks[0] == pytest.approx((1 + 4 + 2) / 3 * DISKS_MASS / 2)
+    assert disks[1] == pytest.approx(DISKS_MASS * 1.5**2 / 2)
+    assert planks == pytest.approx([0.25 * 60 / 2, 4 * 60 * 20 / 12])
+    shares = 1 - np.array([DISKS_MASS, 60]) / ALL_MASS
+    np.testing.assert_allclose(result.expected, np.stack([shares, [1, 1]], axis=1))
+    assert result["mean square velocity of planks"].unit == "2 kT/M"
+    # twice the kinetic energy of 100 particles; the bodies share their momentum
+    warmth = 200 / (2 * (100 - 1 + 4 / (104 + 3 * DISKS_MASS + 60 - 4)))
+    assert result["temperature of the fluid"].measured == pytest.approx(warmth)
+    assert result["second hits in a step"].measured == 3
+    assert result["put back in a step"].measured == 0.5
+
+
+def test_equipartition_of_bodies_that_are_not_free():
+    still = DiskBody(radius=1.5, number=2, fixed=("x", "orientation"), start=LATTICE)
+    [one] = every_kind(moving_disks(bodies=(still,)), "this")
+    assert (one.moving, one.turning, one.free_share) == ((1,), (), 1.0)
+    case = moving_disks(bodies=(still,), observe=[BodyMotion()])
+    result = seen(BodyMotion(), case, np.ones((4, 2)), np.ones(4))
+    assert result.expected.tolist() == [[1.0, pytest.approx(np.nan, nan_ok=True)]]
+    assert [c.what for c in result.comparisons][:2] == [
+        "mean square velocity of disk-1", "temperature of the fluid",
+    ]  # fmt: skip
+    with pytest.raises(CaseError, match="disk-1 turns about no axis freely"):
+        moving_disks(bodies=(still,), observe=[BodyCorrelation(of="orientation")])
+    fixed = DiskBody(radius=1.5, fixed=("x", "y"))
+    with pytest.raises(CaseError, match="disk-1 moves along no axis freely"):
+        moving_disks(bodies=(fixed,), observe=[BodyDisplacement()])
+    pushed = DiskBody(radius=1.5, force=(1.0, 0.0))
+    [one] = every_kind(moving_disks(bodies=(pushed,)), "this")
+    assert not one.thermal and np.isnan(one.velocity_square())
+
+
+def test_mobilities_are_velocities_over_forces():
+    pushed = DiskBody(radius=1.5, number=4, force=(0.0, 2.0), torque=-4.0, counter_force=True)
+    result = seen(BodyDrift(), moving_disks(bodies=(pushed,), observe=[BodyDrift()]))
+    assert result["mobility along y"].measured == pytest.approx(0.75 / 2)
+    assert result["rotational mobility about z"].measured == pytest.approx(1.25 / -4)
+    assert result["velocity along x"].measured == pytest.approx(0.125)
+    assert "mobility along x" not in result
+    assert np.isnan(result["velocity along x"].expected)
+    alone = seen(BodyDrift(kind=2))
+    assert alone["velocity along y"].expected == 0
+    assert [c.key for c in alone.comparisons][2:] == [
+        "velocity-along-its-own-axis", "angular-velocity-about-z",
+    ]  # fmt: skip
+
+
+def run_of(**more):
+    simulation = Simulation(moving_disks(**more), threads=1)
+    simulation.run()
+    return simulation.results
+
+
+EVERYTHING = [mesokit.Conservation(every=5), BodyMotion(every=1), BodyTracks(every=5)]
+
+
+@pytest.fixture(scope="module")
+def at_rest():
+    return run_of(observe=EVERYTHING, steps=400)
+
+
+def test_bodies_move_as_fast_as_the_fluid(at_rest):
+    motion = at_rest["body-motion"]
+    velocity, spin = motion["mean square velocity"], motion["mean square angular velocity"]
+    assert abs(velocity.measured - velocity.expected) < 4 * velocity.error < 0.6
+    assert abs(spin.measured - spin.expected) < 4 * spin.error < 0.6
+    assert motion["temperature of the fluid"].measured == pytest.approx(1, abs=0.1)
+    tracks = at_rest["body-tracks"]
+    assert tracks.value.shape == (81, 3, 11) and np.isfinite(tracks.value).all()
+
+
+def test_momentum_of_fluid_and_bodies_is_kept(at_rest):
+    kept = at_rest["conservation"]
+    assert kept.extra["conserves_momentum"] == 1 and kept.extra["conserves_energy"] == 0
+    assert kept["largest drift of momentum"].measured < 1e-10
+    warm = kept.value[:, kept.x["component"].tolist().index("temperature")]
+    assert warm.mean() == pytest.approx(1, abs=0.1)
+    assert kept.value[0, 0] == kept.expected[0, 0] == 874 + 3
+
+
+def test_a_force_with_its_counter_force_keeps_momentum_and_one_alone_does_not():
+    force = {"radius": 1.5, "number": 3, "force": (5.0, 0.0)}
+    both = run_of(
+        observe=[mesokit.Conservation(every=1)], bodies=(DiskBody(**force, counter_force=True),)
+    )["conservation"]
+    assert both["largest drift of momentum"].measured < 1e-10
+    alone = run_of(observe=[mesokit.Conservation(every=1)], bodies=(DiskBody(**force),))
+    alone = alone["conservation"]
+    assert alone.extra["conserves_momentum"] == 0 and "largest drift of momentum" not in alone
+    t, momentum = alone.x["time"], alone.value[:, 1]
+    assert momentum[-1] - momentum[0] == pytest.approx(3 * 5.0 * (t[-1] - t[0]), rel=1e-6)
