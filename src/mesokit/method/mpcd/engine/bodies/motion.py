@@ -47,7 +47,7 @@ from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.random import BODY_TUMBLE, unit_open, words
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
-ROUNDS_OF_TURN = 8
+ROUNDS_OF_TURN = 16
 
 
 @stage
@@ -131,7 +131,7 @@ def turn_freely(bodies, i, time):
     q, spin = load(rows, i, TURN, FOUR), load(rows, i, SPIN, THREE)
     before = rotated_back(q, turn_by(bodies, i, q, INERTIA, spin))
     after, half = before, THREE
-    # The angle of a step is small, so each round gains some two digits.
+    # The angle of a step is small, so each round gains a digit or two.
     for _ in range(ROUNDS_OF_TURN):
         mean = scaled(0.5, added(before, after))
         half = scaled(0.5 * time, apply_symmetric(bodies.kinds, kind, INVERSE_INERTIA, mean))
