@@ -155,13 +155,14 @@ def unit_turn(half):
 
 @scalar
 def joined_turns(q, p):
-    """First the turn p, then the turn q."""
-    return (
+    """First the turn p, then the turn q; a unit quaternion again."""
+    w = (
         q[0] * p[0] - q[1] * p[1] - q[2] * p[2] - q[3] * p[3],
         q[0] * p[1] + q[1] * p[0] + q[2] * p[3] - q[3] * p[2],
         q[0] * p[2] + q[2] * p[0] + q[3] * p[1] - q[1] * p[3],
         q[0] * p[3] + q[3] * p[0] + q[1] * p[2] - q[2] * p[1],
     )
+    return scaled(1.0 / math.sqrt(dot(w, w)), w)
 
 
 @scalar
