@@ -41,7 +41,8 @@ from mesokit.method.mpcd.engine.bodies.state import (
     store,
     turn_by,
 )
-from mesokit.method.mpcd.engine.cpu.groups import STREAM
+from mesokit.method.mpcd.engine.bodies.stress import add_gaps
+from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, STREAM
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.random import BODY_TUMBLE, unit_open, words
@@ -58,7 +59,7 @@ def begin_step(worker, now, physics, bodies):
     """
     if not now.flags & STREAM:
         return
-    rows, box, n = bodies.rows, box_at_start(now, physics), bodies.substeps
+    rows, n = bodies.rows, bodies.substeps
     first, last = share(len(rows), worker.thread, worker.threads)
     time = physics.timestep / n
     for i in range(first, last):
@@ -71,14 +72,14 @@ def begin_step(worker, now, physics, bodies):
     # Kick, drift, kick: forces at the beginning of a sub-step are those at the end of the last.
     # Threads meet after each drift, because forces need the places of all bodies.
     for i in range(first, last):
-        kick_body(bodies, physics, box, i, 0.5 * time)
+        kick_body(worker, now, physics, bodies, i, 0.5 * time)
     barrier(worker)
     for k in range(n):
         for i in range(first, last):
             drift_body(bodies, physics, i, time)
         barrier(worker)
         for i in range(first, last):
-            kick_body(bodies, physics, box, i, (0.5 if k == n - 1 else 1.0) * time)
+            kick_body(worker, now, physics, bodies, i, (0.5 if k == n - 1 else 1.0) * time)
         barrier(worker)
     for i in range(first, last):
         begin_motion(bodies, physics, i)
@@ -87,10 +88,13 @@ def begin_step(worker, now, physics, bodies):
 
 
 @seldom
-def kick_body(bodies, physics, box, i, time):
+def kick_body(worker, now, physics, bodies, i, time):
     """Change of the velocities of body i by the forces where it is."""
     rows, kind, zero = bodies.rows, bodies.kind[i], physics.zero
-    force, torque = forces_on(bodies, physics, box, i, zero)
+    box = box_at_start(now, physics)
+    force, torque, virial = forces_on(bodies, physics, box, i, zero)
+    if now.flags & MEASURE_STRESS:
+        add_gaps(worker.thread, physics, bodies, scaled(time, virial))
     part = time / physics.timestep
     for k in range(len(zero)):
         root = bodies.kinds[kind, ROOT + k]
