@@ -138,7 +138,7 @@ class Followed(NamedTuple):
     @property
     def asymmetric_share(self) -> float:
         """The share of the viscosity that does not conserve angular momentum."""
-        coefficients = setting.transport(self.case)
+        coefficients = setting.solvent(self.case)
         if "angular momentum" in self.case.fluid.collision.conserves or coefficients is None:
             return 0.0
         return coefficients.viscosity_collisional / coefficients.viscosity
@@ -158,7 +158,7 @@ class Followed(NamedTuple):
         """Radius, side and dynamic viscosity of a single no-slip ball in a periodic cube or square
         at rest; None of anything else."""
         case, d = self.case, self.case.box.dimension
-        solid, coefficients = self.kind.solid(d), setting.transport(case)
+        solid, coefficients = self.kind.solid(d), setting.solvent(case)
         alone = len(case.bodies) == 1 and self.number == 1 and solid.ball
         still = not (case.walls or case.box.sheared or case.fluid.force.acts)
         sticks = self.kind.surface == "no-slip" and len(set(case.box.size)) == 1

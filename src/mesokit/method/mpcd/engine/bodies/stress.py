@@ -1,7 +1,7 @@
 """The part of bodies, and of the particles near them, in the stress of a step.
 
-A body is one particle at its centre X. It carries M (V - u)(V - u), as particles do. What it gives a
-particle at x counts as that impulse times x - X, and so does what the collision gives its virtual
+A body is one particle at its centre X. It carries M (V - u)(V - u), as particles do. What it gives
+a particle at x counts as that impulse times x - X, and so does what the collision gives its virtual
 particles. Forces of gaps count with the separations of centres (Irving and Kirkwood 1950).
 """
 

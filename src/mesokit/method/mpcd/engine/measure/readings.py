@@ -320,8 +320,8 @@ class Readings:
         """Stress of the step that ends now, positive where the fluid above drags the one below.
 
         Kinetic: momentum carried in the flight, which is the mean of the values before and after
-        the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009), and what bodies give
-        and take, at their centres.
+        the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009), and
+        what bodies give and take, at their centres.
         Bond: momentum handed over within molecules of the fluid and between beads of solutes, the
         mean over the flight.
         """
