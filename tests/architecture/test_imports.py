@@ -51,8 +51,8 @@ ROWS = {
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "seam/": (
-        "case", "devices.device", "errors", "geometry.solids", "processes.cores", "seam",
-        "statistics",
+        "case", "devices.device", "errors", "geometry.region", "geometry.solids",
+        "processes.cores", "seam", "statistics",
     ),
     "loops/": ("loops", "scalar"),
     "devices/": ("case.amounts", "case.component", "devices", "errors", "kernels", "stub"),

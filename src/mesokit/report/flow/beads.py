@@ -32,7 +32,8 @@ class BeadFrames:
         method, (first, *others) = method_of(case), case.groups
         self.case, self.reader = case, reader
         self.columns = [case.box.axes.index(axis) for axis in axes]
-        self.rows = np.flatnonzero(reader.id >= first.number)
+        own = reader.id - first.number
+        self.rows = np.flatnonzero((own >= 0) & (own < others[0].number))
         self.kinds = reader.species[self.rows] - len(first.kinds)
         bonds = method.bonds(case) - (reader.id[self.rows[0]] if len(self.rows) else 0)
         self.bonds = bonds[((bonds >= 0) & (bonds < len(self.rows))).all(axis=1)]
