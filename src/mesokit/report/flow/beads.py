@@ -120,14 +120,13 @@ def look(kind: int, molecule: int, only: bool) -> tuple[str, str]:
     return COLOURS[ORDER[number % len(ORDER)]], MARKERS[kind % len(MARKERS)]
 
 
-def key(figure: Any, beads: Beads) -> None:
-    """A legend of the kinds, at the lower right of the figure."""
+def keys(beads: Beads) -> tuple[list[Any], list[str]]:
+    """Marks of a legend of the kinds, and their names."""
     from matplotlib.lines import Line2D
 
-    looks = [look(int(kind), 0, False) for kind in np.unique(beads.kinds)]
+    looks = [look(int(kind), 0, False) for kind in np.unique(beads.kinds) if beads.names]
     marks = [Line2D([], [], color=colour, marker=marker, ls="", ms=5) for colour, marker in looks]
-    where = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.0), "ncols": len(marks)}
-    figure.legend(marks, beads.names, fontsize=8, borderaxespad=0.1, frameon=False, **where)
+    return marks, beads.names
 
 
 def draw(ax: Any, beads: Beads, region: Region) -> None:
