@@ -92,6 +92,7 @@ ROWS = {
     "report/": ("case", "errors", "geometry", "io", "observe", "report", "seam"),
     "report/flow/state.py": ("case", "io.contact_records", "seam"),
     "report/flow/shaded.py": ("report", "kernels.kernel"),
+    "report/flow/shaded_parts.py": ("geometry", "report", "kernels.kernel"),
     "run/": (
         "case", "devices", "errors", "io", "observe.shared", "processes", "report", "run", "seam",
     ),

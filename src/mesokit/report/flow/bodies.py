@@ -18,6 +18,7 @@ from mesokit.report.flow.state import State
 from mesokit.seam.method import BodyShape, method_of
 
 GRID = 128  # samples along the sides of a square that holds an outline
+COLOURS = 4  # of kinds, one after the other
 ARROW = 0.6  # of half the length of a body that swims: half its arrow
 
 
@@ -66,8 +67,8 @@ class BodyFrames:
                     continue
                 lines_of.append(tuple(middle + line for line in lines))
                 kinds.append(kind)
-                if (half_axis := self.shapes[kind].half_axis) > 0:
-                    half = ARROW * half_axis * turns[n, self.columns, 0]
+                half = ARROW * self.shapes[kind].half_axis * turns[n, self.columns, 0]
+                if half.any() and self._holds(kind, here[n], turns[n], half):
                     arrows.append([middle - half, middle + half])
                     swimmers.append(kind)
         return Bodies(
@@ -122,6 +123,16 @@ class BodyFrames:
         height = float(self.plane - place[self.third])
         return outlines(self.shapes[kind], axes @ turn, height)
 
+    def _holds(self, kind: int, place: Array, turn: Array, half: Array) -> bool:
+        """Whether both ends of an arrow are in what the picture's plane cuts."""
+        ends = np.zeros((2, len(place)))
+        ends[:, self.columns] = -half, half
+        if self.third is not None and self.plane is not None:
+            ends[:, self.third] = self.plane - place[self.third]
+        return bool(
+            (distance(self.shapes[kind].parts, ends @ turn[: len(place), : len(place)]) < 0).all()
+        )
+
     @cached_property
     def _own(self) -> list[list[Array]]:
         """Outlines of all kinds in their own frames, in 2D."""
@@ -130,12 +141,14 @@ class BodyFrames:
     def _room(self) -> tuple[float, float]:
         if self.third is None:
             return 0.0, 0.0
-        length = towards(self.columns) * float(self.case.box.size[self.third])
-        return min(0.0, length), max(0.0, length)
+        way = towards(self.columns)
+        back, front = sorted((0.0, way * float(self.case.box.size[self.third])))
+        if self.behind and self.plane is not None:
+            front = way * self.plane
+        return back, front
 
     def _placed(self, places: Array, turns: Array, time: float) -> list[Placed]:
-        """All parts in space, in the picture's axes, with images over its edges; colours are the
-        numbers of kinds."""
+        """All parts in space, in the picture's axes, with images over its edges."""
         assert self.third is not None
         axes = np.zeros((3, 3))
         axes[[0, 1, 2], [*self.columns, self.third]] = 1.0, 1.0, towards(self.columns)
@@ -148,7 +161,7 @@ class BodyFrames:
             for n in np.flatnonzero(self._seen(here)):
                 place, shape = axes @ here[n], self.shapes[self.kinds[n]]
                 if place[2] <= plane:
-                    colour, capped = np.array([float(self.kinds[n])]), shape.half_axis > 0
+                    colour, capped = int(self.kinds[n]) % COLOURS, shape.half_axis > 0
                     found += [
                         Placed(p, place, axes @ turns[n], colour, capped) for p in shape.parts
                     ]

@@ -11,7 +11,7 @@ from mesokit.report.flow.shaded_parts import shaded_parts
 
 NEEDS = "bodies"
 TITLE = "bodies"
-FILLS = "#f0dfae", "#d9893b", "#8a4a9e", "#2d3b55"  # of kinds, far apart in grey
+FILLS = "#f0dfae", "#dd8f45", "#9a5bb0", "#3b4a6b"  # of kinds, far apart in grey
 DARK = 2  # from which fill on arrows are white
 EDGE = 0.9  # points
 ABOVE = 5.5  # the solids, below beads
@@ -36,12 +36,9 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
         draw_over(ax, flow.bodies)
         return
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
-    placed = [
-        part._replace(colour=np.array(to_rgb(fill(int(part.colour[0])))))
-        for part in flow.bodies.placed()
-    ]
-    dots = inches_of(ax)[0] * DPI / (right - left)
-    image = shaded_parts(placed, flow.bodies.room, (left, low), (right, high), dots)
+    dots, corners = inches_of(ax)[0] * DPI / (right - left), ((left, low), (right, high))
+    colours = np.array([to_rgb(colour) for colour in FILLS])
+    image = shaded_parts(flow.bodies.placed(), colours, flow.bodies.room, *corners, dots)
     ax.imshow(image, origin="lower", extent=(left, right, low, high), zorder=2)
 
 
