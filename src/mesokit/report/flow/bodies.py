@@ -94,7 +94,7 @@ class BodyFrames:
             words = [f"those at ${AXES[self.third]} {sign} {place}"]
         if solid and any(shape.half_axis > 0 for shape in self.shapes):
             words.append("dark: the front of those that swim")
-        return ", ".join(words)
+        return "; ".join(words)
 
     @cached_property
     def _radii(self) -> Array:

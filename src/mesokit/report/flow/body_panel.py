@@ -11,9 +11,14 @@ from mesokit.report.flow.shaded_parts import shaded_parts
 
 NEEDS = "bodies"
 TITLE = "bodies"
-FILLS = "#f0dfae", "#dd8f45", "#9a5bb0", "#3b4a6b"  # of kinds, far apart in grey
+FILLS = (
+    "#f0dfae",
+    "#dd8f45",
+    "#9a5bb0",
+    "#3b4a6b",
+)  # of kinds (as many as `COLOURS`), far apart in grey
 DARK = 2  # from which fill on arrows are white
-EDGE = 0.9  # points
+EDGE, HALO = 0.9, 0.7  # points: of edges, and of white around them, for dark maps
 ABOVE = 5.5  # the solids, below beads
 DPI = 200  # of an image of bodies, as figures are saved
 
@@ -50,6 +55,8 @@ def draw_over(ax: Any, bodies: Bodies) -> None:
     if not bodies.outlines:
         return
     paths = [Path.make_compound_path(*map(Path, lines)) for lines in bodies.outlines]
+    halo: Any = {"facecolors": "none", "edgecolors": "white", "linewidths": EDGE + 2 * HALO}
+    ax.add_collection(PathCollection(paths, zorder=ABOVE - 0.1, **halo), autolim=False)
     fills = [fill(int(kind)) for kind in bodies.kinds]
     look: Any = {"facecolors": fills, "edgecolors": "black", "linewidths": EDGE, "zorder": ABOVE}
     ax.add_collection(PathCollection(paths, **look), autolim=False)

@@ -22,12 +22,13 @@ def shifts(case: Case, time: float, axes: Collection[int]) -> Array:
     once = [
         (0, 1, -1) if k in axes and k not in closed else (0,) for k in range(case.box.dimension)
     ]
-    found = np.array(list(itertools.product(*once)), float) @ edges
-    if case.box.sheared:  # those above slide by up to a box: one more lies over the other edge
-        beyond = found[(found[:, 1] != 0)]
-        sides = np.sign(beyond[:, 1:2]) * edges[0]
-        found = np.unique(np.concatenate([found, beyond - sides]), axis=0)
-        found = found[np.argsort((found**2).sum(axis=1), kind="stable")]
+    counts = np.array(list(itertools.product(*once)))
+    if case.box.sheared:  # by up to a box: of these one more lies over the other edge
+        beyond = counts.copy()
+        beyond[:, 0] -= counts[:, 1]
+        counts = np.unique(np.concatenate([counts, beyond]), axis=0)
+        counts = counts[np.argsort((counts**2).sum(axis=1), kind="stable")]
+    found: Array = counts @ edges
     return found
 
 
