@@ -51,8 +51,8 @@ ROWS = {
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "seam/": (
-        "case", "devices.device", "errors", "geometry.solids", "processes.cores", "seam",
-        "statistics",
+        "case", "devices.device", "errors", "geometry.region", "geometry.solids",
+        "processes.cores", "seam", "statistics",
     ),
     "loops/": ("loops", "scalar"),
     "devices/": ("case.amounts", "case.component", "devices", "errors", "kernels", "stub"),
@@ -92,6 +92,7 @@ ROWS = {
     "report/": ("case", "errors", "geometry", "io", "observe", "report", "seam"),
     "report/flow/state.py": ("case", "io.contact_records", "seam"),
     "report/flow/shaded.py": ("report", "kernels.kernel"),
+    "report/flow/shaded_parts.py": ("geometry", "report", "kernels.kernel"),
     "run/": (
         "case", "devices", "errors", "io", "observe.shared", "processes", "report", "run", "seam",
     ),

@@ -28,7 +28,7 @@ from tests.helpers.known_flows import FRAMES, MAPS, SPIN, Disk, results_of
 
 SIZE = (12, 10)
 OF_GRAINS = ("disks", "force-chains")
-OF_FLUIDS = [kind for kind in KINDS if kind not in (*OF_GRAINS, "flock", "sites")]
+OF_FLUIDS = [kind for kind in KINDS if kind not in (*OF_GRAINS, "flock", "bodies", "sites")]
 
 
 @pytest.fixture

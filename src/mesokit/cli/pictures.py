@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from mesokit.run.opened import RunFiles
 
 KIND = (
-    "quiver, streamlines, particles, density, speed, vorticity, four, disks, force-chains, flock; "
-    "of a lattice sites, space-time, profiles, heights or occupied"
+    "quiver, streamlines, particles, density, speed, vorticity, four, disks, force-chains, flock, "
+    "bodies; of a lattice sites, space-time, profiles, heights or occupied"
 )
 SHORT, LONG = 2.0, 5  # seconds: of a film too short to be seen, and slowed down
 

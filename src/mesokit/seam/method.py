@@ -25,6 +25,7 @@ from mesokit.seam.observable import Observable
 from mesokit.seam.units import Units
 
 if TYPE_CHECKING:
+    from mesokit.geometry.region import Part
     from mesokit.geometry.solids.solids import Solids
 
 E = TypeVar("E")  # engine of a method
@@ -176,6 +177,18 @@ class Enclosure(NamedTuple):
     pushed_plates: Callable[[Case], Sequence[tuple[int, Plate]]] = lambda case: ()
 
 
+class BodyShape(NamedTuple):
+    """Shape of a kind of bodies that move: convex parts about its centre, in its own frame.
+
+    radius: of the smallest sphere about the centre that holds it; half_axis: of a body that swims
+    along its axis x, how far its end is from the centre; 0 of others.
+    """
+
+    parts: tuple[Part, ...]
+    radius: float
+    half_axis: float = 0.0
+
+
 NOT_ENCLOSED, STEADY = Enclosure(), Steadiness()
 
 
@@ -227,6 +240,9 @@ class Method:
         What shuts its particles in.
     bonds : function of a case, optional
         Pairs (bonds, 2) of the numbers of particles that are bonded.
+    bodies : function of a case, optional
+        Shapes of bodies that move, for pictures: one for each kind of the group that has an
+        "orientation".
     log : function of a case, optional
         The columns of the log of its run.
     si : function of a case, optional
@@ -260,6 +276,7 @@ class Method:
     expected: Mapping[str, Callable[[Case, Observable], Any]] = field(default_factory=dict)
     enclosure: Enclosure = NOT_ENCLOSED
     bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
+    bodies: Callable[[Case], tuple[BodyShape, ...]] = lambda case: ()
     log: Callable[[Case], Columns[Any]] = lambda case: NO_COLUMNS
     si: Callable[[Case], InSI] | None = None
     steadiness: Steadiness = STEADY

@@ -8,6 +8,7 @@ from mesokit.case.trajectory import Group, Kind
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.body.drawn import drawn_as
 from mesokit.method.mpcd.body.protocol import named
+from mesokit.seam.method import BodyShape
 
 OF_BODIES = ("position", "velocity", "spin", "orientation", "image", "id")
 
@@ -45,6 +46,13 @@ def _bodies(case: Case) -> tuple[Kind, ...]:
         shape, mass = drawn_as(solid.parts, d), kind.mass_in(d, density)
         found.append(Kind(mass, kind.number, name, 2.0 * solid.radius, shape))
     return tuple(found)
+
+
+def body_shapes(case: Case) -> tuple[BodyShape, ...]:
+    """Shapes of all kinds of bodies, for pictures."""
+    solids = [kind.solid(case.box.dimension) for kind in case.bodies]
+    halves = [kind.half_axis if kind.swim is not None else 0.0 for kind in case.bodies]
+    return tuple(BodyShape(s.parts, s.radius, half) for s, half in zip(solids, halves, strict=True))
 
 
 def fluid_mass_density(case: Case) -> float:

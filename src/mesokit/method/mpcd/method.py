@@ -30,7 +30,7 @@ from mesokit.method.mpcd.expected.setting import closed_axes
 from mesokit.method.mpcd.expected.velocities import Velocities
 from mesokit.method.mpcd.expected.velocity_memory import VelocityMemory
 from mesokit.method.mpcd.fluid import Fluid
-from mesokit.method.mpcd.groups import bonded_pairs, groups
+from mesokit.method.mpcd.groups import body_shapes, bonded_pairs, groups
 from mesokit.method.mpcd.observe import Observable
 from mesokit.method.mpcd.observe.shared.density_in_slices import DensityInSlices
 from mesokit.method.mpcd.observe.shared.flow_in_slices import FlowInSlices
@@ -168,6 +168,7 @@ METHOD = Method(
     check=combinations.check,
     groups=groups,
     bonds=bonded_pairs,
+    bodies=body_shapes,
     enclosure=Enclosure(lambda c: closed_axes(c) | {AXES.index(a) for a in c.box.open}, solids),
     timestep=lambda case: float(case.fluid.timestep),
     summary=summary,

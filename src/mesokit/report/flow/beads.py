@@ -32,7 +32,8 @@ class BeadFrames:
         method, (first, *others) = method_of(case), case.groups
         self.case, self.reader = case, reader
         self.columns = [case.box.axes.index(axis) for axis in axes]
-        self.rows = np.flatnonzero(reader.id >= first.number)
+        own = reader.id - first.number
+        self.rows = np.flatnonzero((own >= 0) & (own < others[0].number))
         self.kinds = reader.species[self.rows] - len(first.kinds)
         bonds = method.bonds(case) - (reader.id[self.rows[0]] if len(self.rows) else 0)
         self.bonds = bonds[((bonds >= 0) & (bonds < len(self.rows))).all(axis=1)]
@@ -119,14 +120,13 @@ def look(kind: int, molecule: int, only: bool) -> tuple[str, str]:
     return COLOURS[ORDER[number % len(ORDER)]], MARKERS[kind % len(MARKERS)]
 
 
-def key(figure: Any, beads: Beads) -> None:
-    """A legend of the kinds, at the lower right of the figure."""
+def keys(beads: Beads) -> tuple[list[Any], list[str]]:
+    """Marks of a legend of the kinds, and their names."""
     from matplotlib.lines import Line2D
 
-    looks = [look(int(kind), 0, False) for kind in np.unique(beads.kinds)]
+    looks = [look(int(kind), 0, False) for kind in np.unique(beads.kinds) if beads.names]
     marks = [Line2D([], [], color=colour, marker=marker, ls="", ms=5) for colour, marker in looks]
-    where = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.0), "ncols": len(marks)}
-    figure.legend(marks, beads.names, fontsize=8, borderaxespad=0.1, frameon=False, **where)
+    return marks, beads.names
 
 
 def draw(ax: Any, beads: Beads, region: Region) -> None:

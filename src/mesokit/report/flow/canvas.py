@@ -7,7 +7,7 @@ from typing import Any
 import matplotlib as mpl
 
 from mesokit.report.caption import unbroken
-from mesokit.report.flow import beads
+from mesokit.report.flow import beads, body_panel
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel
 from mesokit.report.flow.layout import LINE, Box, layout
@@ -61,8 +61,10 @@ class Canvas:
         width = layout(self.view.extent, bars, stamp).size[0] - 2 * MARGIN
         note = unbroken("; ".join(filter(None, notes)))
         lines = textwrap.wrap(note, max(12, int(width * LETTERS)), break_long_words=False)
-        self.first = next((flow.beads for flow in flows if flow.beads is not None), None)
-        if self.first is not None and self.first.names:
+        marks = [beads.keys(flow.beads) for flow in flows[:1] if flow.beads is not None]
+        marks += [body_panel.keys(flow.bodies) for flow in flows[:1] if flow.bodies is not None]
+        named = [name for _, names in marks for name in names]
+        if named:
             lines.append("")  # room for the legend of the kinds
         self.place = layout(self.view.extent, bars, stamp, len(lines))
         with mpl.rc_context(LOOK):
@@ -78,8 +80,8 @@ class Canvas:
             across, down = self.place.size
             for number, line in enumerate(reversed(lines)):
                 self.figure.text(MARGIN / across, (0.06 + LINE * number) / down, line, size=8)
-            if self.first is not None and self.first.names:
-                beads.key(self.figure, self.first)
+            if named:
+                self._key([mark for some, _ in marks for mark in some], named)
             self.stamp = self.figure.text(0.5, top, "", ha="center", va="top")
         self.still = [set(ax.get_children()) for ax in self.axes]
 
@@ -104,6 +106,11 @@ class Canvas:
             named = not self.place.flat or box.width > NAMED
             title = f"({'abcd'[number]}) {self.panels[number].TITLE * named}".rstrip()
             ax.set_title(title, loc="left", fontsize=10)
+
+    def _key(self, marks: Sequence[Any], names: Sequence[str]) -> None:
+        """A legend of the kinds of beads and bodies, at the lower right of the figure."""
+        where: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.0), "ncols": len(marks)}
+        self.figure.legend(marks, names, fontsize=8, borderaxespad=0.1, frameon=False, **where)
 
     def _add(self, box: Box) -> Any:
         width, height = self.figure.get_size_inches()
@@ -139,6 +146,8 @@ class Canvas:
                 if flow.spheres is not None and self._anew(flow):
                     spheres = flow.spheres
                     self.section.draw(ax, self.view, spheres.plates, spheres.time)
+                if flow.bodies is not None and panel.NEEDS != "bodies":
+                    body_panel.draw_over(ax, flow.bodies)
                 if flow.beads is not None:
                     beads.draw(ax, flow.beads, self.region)
                 ax.set(xlim=limits[0], ylim=limits[1])

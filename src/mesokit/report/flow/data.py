@@ -110,6 +110,36 @@ class Beads:
 
 
 @dataclass(frozen=True)
+class Bodies:
+    """Rigid bodies at one time, images over the edges of a periodic box included.
+
+    Parameters
+    ----------
+    outlines: of each, closed lines (n, 2) in the picture; in 3D of its section.
+    kinds: of each, from 0.
+    arrows: (m, 2, 2) tail and tip along the axis of those that swim; swimmers: their kinds (m,).
+    called: what each kind is called.
+    time: of the frame.
+    placed: function that returns their parts in space, None in 2D.
+    room: the least and the largest depth, in space.
+    """
+
+    outlines: tuple[tuple[Array, ...], ...]
+    kinds: NDArray[np.int64]
+    arrows: Array
+    swimmers: NDArray[np.int64]
+    called: tuple[str, ...]
+    time: float
+    placed: Callable[[], Any] | None = None
+    room: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the kinds in a legend; none where there is one kind only."""
+        return self.called if len(self.called) > 1 else ()
+
+
+@dataclass(frozen=True)
 class Flow:
     """Means over a time on a grid over two axes of the box, and particles at its end.
 
@@ -128,6 +158,7 @@ class Flow:
     lowest: density at which its colours start.
     smoothing: width over which the velocity has been smoothed, in bins.
     beads: of solutes, drawn over all, or None.
+    bodies: that move, drawn over all but beads, or None.
     bonds: ends (m, 2, 2) of those between the `particles`, or None.
     spheres: at the end of the time, or None.
     headings: velocities (n, 2) of the `particles` along the two axes, or None.
@@ -151,6 +182,7 @@ class Flow:
     lowest: float = 0.0
     smoothing: float = 0.0
     beads: Beads | None = None
+    bodies: Bodies | None = None
     bonds: Array | None = None
     spheres: Spheres | None = None
     headings: Array | None = None

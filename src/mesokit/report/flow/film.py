@@ -20,6 +20,7 @@ from mesokit.report.caption import at
 from mesokit.report.finish.origin import Origin, origin_of
 from mesokit.report.finish.saving import foot_strip
 from mesokit.report.flow.beads import BeadFrames, frames_of
+from mesokit.report.flow.bodies import BodyFrames, bodies_of
 from mesokit.report.flow.colouring import in_film
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
@@ -149,10 +150,14 @@ def animate(
     solutes = frames_of(case, trajectory, source.axes)
     if solutes:
         first = replace(first, beads=solutes.at(source.time[means[0][-1]]))
+    moving = bodies_of(case, trajectory, source.axes, section.plane, view.at is not None)
+    if moving:
+        first = replace(first, bodies=moving.at(source.time[means[0][-1]]))
+        notes.append(moving.where(kind == "bodies"))
     drawn = Canvas(panels, [first] * len(panels), reaches, shown, section, True, notes)
     drawn.figure.set_dpi(DPI[ending])
     progress.start(len(means), case.particles, "drawing")
-    pictures = _pictures(drawn, source, means, progress, width, solutes)
+    pictures = _pictures(drawn, source, means, progress, width, solutes, moving)
     return _write(path, drawn.figure, pictures, len(means), fps, progress, origin_of(case, run))
 
 
@@ -243,13 +248,15 @@ def _pictures(
     progress: Reporter,
     width: float,
     solutes: BeadFrames | None,
+    moving: BodyFrames | None,
 ) -> Iterator[Pixels]:
     """The pictures of a film, one by one: each the mean of a row of frames, at its end."""
     canvas: Any = drawn.figure.canvas
     for done, mean in enumerate(means, start=1):
         now = source.time[mean[-1]]
         beads = solutes.at(now) if solutes else None
-        flow = replace(smooth(source.flow(mean), width), beads=beads)
+        bodies = moving.at(now) if moving else None
+        flow = replace(smooth(source.flow(mean), width), beads=beads, bodies=bodies)
         stamp = at(now)
         if flow.spheres is not None and flow.spheres.remark:
             stamp += f", {flow.spheres.remark}"

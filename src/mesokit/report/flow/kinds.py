@@ -6,7 +6,16 @@ from typing import Any, Protocol
 from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
-from mesokit.report.flow import birds, disks, force_chains, particles, quiver, sites, streamlines
+from mesokit.report.flow import (
+    birds,
+    body_panel,
+    disks,
+    force_chains,
+    particles,
+    quiver,
+    sites,
+    streamlines,
+)
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.maps import LINES, density, speed, vorticity
 from mesokit.report.flow.region import Region
@@ -14,13 +23,14 @@ from mesokit.report.flow.scale import Scale
 from mesokit.report.flow.site_frames import lattice_group
 from mesokit.report.flow.site_kinds import SITE_KINDS, require_fitting
 from mesokit.report.flow.source import Found
+from mesokit.seam.method import method_of
 
 
 class Panel(Protocol):
     """One panel of a picture: a module, or an object of a class.
 
-    NEEDS: "velocity", "density", "particles", "spheres", "contacts", "headings" or "sites"; TITLE:
-    its name where several are side by side.
+    NEEDS: "velocity", "density", "particles", "spheres", "contacts", "headings", "bodies" or
+    "sites"; TITLE: its name where several are side by side.
     """
 
     NEEDS: str
@@ -46,6 +56,7 @@ KINDS: dict[str, tuple[Panel, ...]] = {
     "disks": (disks,),
     "force-chains": (force_chains,),
     "flock": (birds,),
+    "bodies": (body_panel,),
     "sites": (sites,),
     "four": (quiver, streamlines, particles, density),
 }
@@ -70,7 +81,7 @@ def usual(case: Case, found: Found, first: str, in_time: bool) -> str:
         return own
     if own and own not in KINDS:
         raise CaseError(f"method {show(case.run.method)}: picture = {show(own)}: {_expected(own)}")
-    wanted = [own or first, first, "speed", "density", "particles"]
+    wanted = [own or first, first, "speed", "density", "bodies", "particles"]
     for kind in wanted:
         needs = {panel.NEEDS for panel in KINDS[kind]}
         drawn = [source for source in found if len(source.time) or not in_time]
@@ -99,6 +110,8 @@ def panels_of(kind: str, case: Case, colour: str | None = None) -> tuple[Panel, 
             f"kind = {show(kind)}: particles of method {show(case.run.method)} have no size; "
             "expected 'particles', or another kind"
         )
+    if kind == "bodies" and not method_of(case).bodies(case):
+        raise CaseError("kind = 'bodies': the case has no bodies that move; expected another kind")
     touch = any(panel.NEEDS == "contacts" for panel in KINDS[kind])
     if touch and not case.particles_have("contact"):
         raise CaseError(

@@ -58,6 +58,11 @@ class Section:
                 f"at = {show(at)}: expected a place along {AXES[self.third]}, from 0 to {length}"
             )
 
+    @property
+    def plane(self) -> float | None:
+        """The place along the third axis, None in 2D."""
+        return None if self.third is None else self.at
+
     def note(self, how: str = "mean") -> str:
         """Caption of a 3D picture: a mean along the third axis, but a cut of the solids."""
         if self.third is None:

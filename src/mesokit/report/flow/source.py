@@ -26,6 +26,7 @@ WORDS = {
     "spheres": "positions of spheres",
     "contacts": "contacts of spheres",
     "headings": "positions and velocities of particles",
+    "bodies": "places and orientations of bodies",
     "sites": "states of sites",
 }
 AT_ONCE = (
@@ -33,6 +34,7 @@ AT_ONCE = (
     "spheres",
     "contacts",
     "headings",
+    "bodies",
     "sites",
 )  # shown at one time, and not as a mean
 FRAMES = '[[observe]] quantity = "flow-frames"'
@@ -43,6 +45,7 @@ REMEDY = {
     "spheres": "[trajectory]",
     "contacts": '[trajectory] with fields = ["position", "contact"]',
     "headings": '[trajectory] with fields = ["position", "velocity"]',
+    "bodies": '[trajectory] with of = "bodies", fields = ["position", "orientation"]',
     "sites": '[trajectory] with fields = ["site"]',
 }
 OF_TRAJECTORIES = {  # of methods that offer no flow-frames

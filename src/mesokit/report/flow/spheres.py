@@ -1,7 +1,6 @@
 """Pictures from the disks and spheres of a trajectory."""
 
 import functools
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -15,6 +14,7 @@ from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.caption import in_cells
 from mesokit.report.flow.colouring import Frame, chosen
 from mesokit.report.flow.data import Array, Flow, Links, Spheres
+from mesokit.report.flow.images import shifts, towards
 from mesokit.report.flow.region import View
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.state import State
@@ -41,8 +41,7 @@ class SphereSource:
         self.gives = frozenset(["spheres", *["contacts"] * ("contact" in reader.fields)])
         self.setting = Setting.of(case, self.axes)
         self.third = next((k for k in range(3) if k not in self.setting.columns), 2)
-        first, second = self.setting.columns
-        self.towards = 1.0 if (second - first) % 3 == 1 else -1.0  # a right-handed picture
+        self.towards = towards(self.setting.columns)
 
     def flow(self, frames: NDArray[np.int64]) -> Flow:
         """Spheres as they are in the last of the frames."""
@@ -130,14 +129,5 @@ class SphereSource:
 
     def _repeats(self, time: float) -> tuple[tuple[float, float], ...]:
         """No displacement, and those by one box along each periodic axis of the picture."""
-        box, closed = self.case.box, method_of(self.case).enclosure.closed_axes(self.case)
-        edges = np.diag(np.array(box.size, float))
-        if box.sheared:
-            edges[1, 0] = box.displacement(time) % edges[0, 0]
-        once = [(0, 1, -1) if k not in closed else (0,) for k in self.setting.columns]
-        found: dict[tuple[float, float], None] = {}
-        for counts in itertools.product(*once):
-            shift = sum(n * edges[k] for n, k in zip(counts, self.setting.columns, strict=True))
-            first, second = shift[self.setting.columns].tolist()
-            found[first, second] = None
-        return tuple(found)
+        found = shifts(self.case, time, self.setting.columns)[:, self.setting.columns]
+        return tuple(dict.fromkeys((float(first), float(second)) for first, second in found))

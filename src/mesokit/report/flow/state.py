@@ -39,6 +39,8 @@ class State:
         if spheres:
             self.fields = ("position", "velocity", "spin")
             self.fields += (FIELD,) * case.particles_have(FIELD)
+        elif any("orientation" in group.has for group in case.groups):
+            self.fields += ("orientation",)
         elif case.particles_have("heading"):
             self.fields = ("position", "velocity")
         elif case.particles_have("site"):
@@ -51,6 +53,8 @@ class State:
         self.mass = masses[self.species]
         self.step, self.time = np.array([engine.step]), np.array([engine.time])
         self.engine = engine
+        first = sum(group.number for group in case.groups if "orientation" not in group.has)
+        self.bodies = self.id >= first
         self.diameter: NDArray[np.float64] | None = None
         if spheres:
             self.mass, self.diameter = engine.masses(self.id), engine.diameters(self.id)
@@ -62,4 +66,7 @@ class State:
         """The frame."""
         known = [name for name in self.fields if name in READ]
         read = {name: getattr(self.engine, READ[name])(self.id) for name in known}
+        if "orientation" in self.fields:
+            read["orientation"] = np.full((len(self.id), 4), np.nan)
+            read["orientation"][self.bodies] = self.engine.orientations(self.id[self.bodies])
         return Now(read, self.engine)

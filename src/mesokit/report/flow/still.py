@@ -12,6 +12,7 @@ from mesokit.errors import CaseError
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.caption import at, rounded, symbols
 from mesokit.report.flow.beads import frames_of
+from mesokit.report.flow.bodies import bodies_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
 from mesokit.report.flow.noise import note, smooth, smoothing
@@ -38,15 +39,15 @@ def picture(
     ----------
     case, results, trajectory: of the run; a `State` of its engine is a trajectory of one frame.
     kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity", "four", of
-        spheres "disks" and "force-chains", of birds "flock", of sites "sites", "space-time",
-        "profiles", "heights" or "occupied"; unless said that of the method, else "four", or what
-        the run has kept enough for.
+        spheres "disks" and "force-chains", of birds "flock", of bodies that move "bodies", of
+        sites "sites", "space-time", "profiles", "heights" or "occupied"; unless said that of the
+        method, else "four", or what the run has kept enough for.
     choices: the rest.
     region: ((x0, x1), (y0, y1)) in cells, the whole box unless said.
     window: (t0, t1), the times averaged over, all unless said.
     axes: of the picture in 3D, those of the first map unless said; it averages along the third.
-    at: where along the third axis solids are shown, in the middle unless said; of spheres those
-        behind it.
+    at: where along the third axis solids and bodies are cut, in the middle unless said; of spheres
+        and shaded bodies those behind it.
     colour: of disks and spheres: "speed" (unless said), "spin", "neighbours", "psi6" or "kind".
     states: names of those of kind "occupied"; all but the first unless said.
     time: "log" for profiles at times whose ratios are alike, else "linear".
@@ -82,7 +83,9 @@ def picture(
     width, clear = smoothing(panels, flows, shown)
     solutes = frames_of(case, trajectory, chosen[0].axes)
     beads = solutes.at(window and window[1]) if solutes else None
-    flows = [replace(smooth(flow, width), beads=beads) for flow in flows]
+    moving = bodies_of(case, trajectory, chosen[0].axes, section.plane, view.at is not None)
+    bodies = moving.at(window and window[1]) if moving else None
+    flows = [replace(smooth(flow, width), beads=beads, bodies=bodies) for flow in flows]
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
     averaged = [f for f, panel in zip(flows, panels, strict=True) if panel.NEEDS not in AT_ONCE]
     mean = _mean(averaged[0], window) if averaged else ""
@@ -95,6 +98,8 @@ def picture(
         legend_of(panels),
     ]
     notes += [_few(case, panels, flows), when]
+    if moving and bodies:
+        notes += [f"bodies at {at(bodies.time, 4)}", moving.where(kind == "bodies")]
     for spheres in filter(None, (flow.spheres for flow in flows)):
         notes += [f"at {at(spheres.time, 4)}", spheres.remark, spheres.note]
     if any(panel.NEEDS == "headings" for panel in panels):

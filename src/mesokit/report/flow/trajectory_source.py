@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.io.trajectory_reader import TrajectoryReader
+from mesokit.report.flow.bodies import bodies_of
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.state import State
@@ -56,6 +57,8 @@ class TrajectorySource:
         self.rows = np.flatnonzero(reader.id < case.particles)
         self.bonds = FluidBonds(case, reader.id[self.rows], self.setting.columns)
         known = {"particles"}
+        if bodies_of(case, reader, axes) is not None:
+            known |= {"bodies"}
         if "velocity" in reader.fields and len(self.rows):
             known |= {"velocity", "headings"}
         if len(self.rows) == case.particles > 0:

@@ -1,0 +1,220 @@
+"""Rigid bodies that move, at the time of a picture: outlines to scale, and their images."""
+
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import AXES
+from mesokit.case.case import Case
+from mesokit.io.trajectory_reader import TrajectoryReader
+from mesokit.report.caption import in_cells
+from mesokit.report.flow.body_distance import distance
+from mesokit.report.flow.data import Array, Bodies
+from mesokit.report.flow.images import shifts, towards
+from mesokit.report.flow.shaded_parts import Placed
+from mesokit.report.flow.state import State
+from mesokit.seam.method import BodyShape, method_of
+
+GRID = 128  # samples along the sides of a square that holds an outline
+COLOURS = 4  # of kinds, one after the other
+ARROW = 0.6  # of half the length of a body that swims: half its arrow
+
+
+class BodyFrames:
+    """The bodies that a trajectory has, seen along the third axis of the box.
+
+    `plane` is the place along that axis where flow maps cut them, None in 2D; `behind` says that
+    pictures in space show only those with a centre behind it.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        reader: TrajectoryReader | State,
+        axes: tuple[str, str],
+        plane: float | None = None,
+        behind: bool = False,
+    ) -> None:
+        self.case, self.reader, self.plane, self.behind = case, reader, plane, behind
+        self.shapes = method_of(case).bodies(case)
+        before = [group for group in case.groups if "orientation" not in group.has]
+        own = reader.id - sum(group.number for group in before)
+        bodies = next(group for group in case.groups if "orientation" in group.has)
+        self.rows = np.flatnonzero((own >= 0) & (own < bodies.number))
+        self.kinds = reader.species[self.rows] - sum(len(group.kinds) for group in before)
+        self.called = tuple(kind.name for kind in bodies.kinds)
+        self.columns = [case.box.axes.index(axis) for axis in axes]
+        self.third = next((k for k in range(case.box.dimension) if k not in self.columns), None)
+
+    def at(self, time: float | None = None) -> Bodies:
+        """In the frame that is nearest to a time, the last one unless said."""
+        times = self.reader.time
+        index = len(times) - 1 if time is None else int(np.argmin(np.abs(times - time)))
+        now, read = float(times[index]), self.reader[index]
+        places = read["position"][self.rows].astype(float)
+        turns: Array = np.tile(np.eye(3), (len(places), 1, 1))
+        if "orientation" in read:
+            turns = rotations(read["orientation"][self.rows].astype(float))
+        lines_of, kinds, arrows, swimmers = [], [], [], []
+        for shift in shifts(self.case, now, range(self.case.box.dimension)):
+            here = places + shift
+            for n in np.flatnonzero(self._seen(here) & self._cut(here)):
+                kind, middle = int(self.kinds[n]), here[n, self.columns]
+                lines = self._outline(kind, here[n], turns[n])
+                if not lines:
+                    continue
+                lines_of.append(tuple(middle + line for line in lines))
+                kinds.append(kind)
+                half = ARROW * self.shapes[kind].half_axis * turns[n, self.columns, 0]
+                if half.any() and self._holds(kind, here[n], turns[n], half):
+                    arrows.append([middle - half, middle + half])
+                    swimmers.append(kind)
+        return Bodies(
+            outlines=tuple(lines_of),
+            kinds=np.array(kinds, np.int64),
+            arrows=np.array(arrows, float).reshape(-1, 2, 2),
+            swimmers=np.array(swimmers, np.int64),
+            called=self.called,
+            time=now,
+            placed=None if self.third is None else partial(self._placed, places, turns, now),
+            room=self._room(),
+        )
+
+    def where(self, solid: bool) -> str:
+        """Caption: where bodies are cut; in space which are shown, and which end is dark."""
+        if self.third is None or self.plane is None:
+            return ""
+        words, sign = [], "<" if towards(self.columns) > 0 else ">"
+        place = f"{self.plane:g}{in_cells()}$"
+        if not solid:
+            words = [f"cut at ${AXES[self.third]} = {place}"]
+        elif self.behind:
+            words = [f"those at ${AXES[self.third]} {sign} {place}"]
+        if solid and any(shape.half_axis > 0 for shape in self.shapes):
+            words.append("dark: the front of those that swim")
+        return "; ".join(words)
+
+    @cached_property
+    def _radii(self) -> Array:
+        return np.array([shape.radius for shape in self.shapes])[self.kinds]
+
+    def _seen(self, places: Array) -> NDArray[np.bool_]:
+        """Which bodies at these places (n, d) can reach into the box, as the picture shows it."""
+        size, own = np.array(self.case.box.size)[self.columns], places[:, self.columns]
+        reach = self._radii[:, None]
+        return np.all((own > -reach) & (own < size + reach), axis=1)
+
+    def _cut(self, places: Array) -> NDArray[np.bool_]:
+        """Which can reach the plane of the picture."""
+        if self.third is None:
+            return np.ones(len(places), bool)
+        assert self.plane is not None
+        return np.abs(places[:, self.third] - self.plane) < self._radii
+
+    def _outline(self, kind: int, place: Array, turn: Array) -> list[Array]:
+        """Closed lines (n, 2) around what the picture's plane cuts, about the body's centre."""
+        if self.third is None:
+            return [line @ turn[self.columns, :2].T for line in self._own[kind]]
+        assert self.plane is not None
+        axes = np.zeros((3, 3))
+        axes[[0, 1, 2], [*self.columns, self.third]] = 1.0
+        height = float(self.plane - place[self.third])
+        return outlines(self.shapes[kind], axes @ turn, height)
+
+    def _holds(self, kind: int, place: Array, turn: Array, half: Array) -> bool:
+        """Whether both ends of an arrow are in what the picture's plane cuts."""
+        ends = np.zeros((2, len(place)))
+        ends[:, self.columns] = -half, half
+        if self.third is not None and self.plane is not None:
+            ends[:, self.third] = self.plane - place[self.third]
+        return bool(
+            (distance(self.shapes[kind].parts, ends @ turn[: len(place), : len(place)]) < 0).all()
+        )
+
+    @cached_property
+    def _own(self) -> list[list[Array]]:
+        """Outlines of all kinds in their own frames, in 2D."""
+        return [outlines(shape, np.eye(2)) for shape in self.shapes]
+
+    def _room(self) -> tuple[float, float]:
+        if self.third is None:
+            return 0.0, 0.0
+        way = towards(self.columns)
+        back, front = sorted((0.0, way * float(self.case.box.size[self.third])))
+        if self.behind and self.plane is not None:
+            front = way * self.plane
+        return back, front
+
+    def _placed(self, places: Array, turns: Array, time: float) -> list[Placed]:
+        """All parts in space, in the picture's axes, with images over its edges."""
+        assert self.third is not None
+        axes = np.zeros((3, 3))
+        axes[[0, 1, 2], [*self.columns, self.third]] = 1.0, 1.0, towards(self.columns)
+        plane = np.inf
+        if self.behind and self.plane is not None:
+            plane = towards(self.columns) * self.plane
+        found = []
+        for shift in shifts(self.case, time, self.columns):
+            here = places + shift
+            for n in np.flatnonzero(self._seen(here)):
+                place, shape = axes @ here[n], self.shapes[self.kinds[n]]
+                if place[2] <= plane:
+                    colour, capped = int(self.kinds[n]) % COLOURS, shape.half_axis > 0
+                    found += [
+                        Placed(p, place, axes @ turns[n], colour, capped) for p in shape.parts
+                    ]
+        return found
+
+
+def bodies_of(
+    case: Case,
+    trajectory: TrajectoryReader | State | None,
+    axes: tuple[str, str],
+    plane: float | None = None,
+    behind: bool = False,
+) -> BodyFrames | None:
+    """The bodies of a run, None if it kept none, or of any that is not round no orientation."""
+    if trajectory is None or not len(trajectory) or "position" not in trajectory.fields:
+        return None
+    shapes = method_of(case).bodies(case)
+    if not shapes or ("orientation" not in trajectory.fields and not all(map(_round, shapes))):
+        return None
+    found = BodyFrames(case, trajectory, axes, plane, behind)
+    return found if len(found.rows) else None
+
+
+def _round(shape: BodyShape) -> bool:
+    """Whether a picture of a body has no need of its orientation."""
+    alone = len(shape.parts) == 1 and shape.parts[0].kind == "ball"
+    return alone and shape.half_axis == 0
+
+
+def rotations(turns: Array) -> Array:
+    """Matrices (n, 3, 3) of unit quaternions (n, 4) w, x, y, z.
+
+    >>> rotations(np.array([[0.5**0.5, 0, 0, 0.5**0.5]])).round(9)[0, :, 0].tolist()
+    [0.0, 1.0, 0.0]
+    """
+    w, u = turns[:, 0, None, None], turns[:, 1:]
+    cross = np.cross(np.eye(3)[None], u[:, None])  # its rows times a vector: u x vector
+    found: Array = np.eye(3) + 2.0 * w * cross + 2.0 * cross @ cross
+    return found
+
+
+def outlines(shape: BodyShape, turn: Array, height: float = 0.0) -> list[Array]:
+    """Closed lines (n, 2) where a plane cuts the surface, about the centre.
+
+    `turn` (d, d) takes vectors of the body's frame to the picture's; in 3D the plane is at a
+    `height` along the picture's third axis.
+    """
+    from contourpy import contour_generator
+
+    reach = shape.radius * (1.0 + 4.0 / GRID)
+    along = np.linspace(-reach, reach, GRID)
+    u, v = np.meshgrid(along, along)
+    places = np.stack([u, v, np.full_like(u, height)][: len(turn)], axis=-1).reshape(-1, len(turn))
+    values = distance(shape.parts, places @ turn).reshape(u.shape)
+    lines: Any = contour_generator(u, v, values).lines(0.0)
+    return [np.asarray(line) for line in lines]
