@@ -94,8 +94,6 @@ def _check_ranks(case: Case, ranks: int) -> None:
     from mesokit.method.mpcd.engine.domains.blocks.tree import divided
     from mesokit.method.mpcd.engine.domains.domain import axes_to_cut
 
-    if case.bodies:
-        raise CaseError(f"bodies: not on {ranks} ranks yet; expected one rank")
     if case.solutes is not None and case.solutes.coupling == "potential":
         raise CaseError(
             f"solutes.coupling = 'potential': not on {ranks} ranks; expected one rank, or "

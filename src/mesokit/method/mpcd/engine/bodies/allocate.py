@@ -118,7 +118,7 @@ def needed_substeps(case: Case) -> int:
     return max(1, math.ceil(math.sqrt(fast) * case.fluid.timestep / PHASE))
 
 
-def allocate_bodies(numbers: Numbers, threads: int, waste: int) -> MovingBodies:
+def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = None) -> MovingBodies:
     """Bodies at rest at 0, and room for all that their steps need."""
     case, d = numbers.case, numbers.dimension
     fluid, box = case.fluid, case.box
@@ -185,6 +185,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int) -> MovingBodies:
         waste=zeros((threads, waste), np.int64),
         solid=walls,
         pull=balancing_pull(case),
+        messages=() if domain is None else domain.body_messages(n, state.SUMS),
     )
 
 

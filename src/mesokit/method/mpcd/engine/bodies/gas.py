@@ -6,6 +6,7 @@ thermal noise of the body once, and its temperature is exact.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,6 +64,8 @@ from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import add_values, load_values
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
+from mesokit.method.mpcd.engine.domains.messages.bodies import add_others, is_own_cell
+from mesokit.method.mpcd.engine.domains.messages.shared import key_of
 from mesokit.method.mpcd.engine.embedded.near import note
 from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
 from mesokit.method.mpcd.engine.where import where
@@ -98,8 +101,9 @@ def draw_all_gas(worker, now, physics, fluid, bodies):
     for i in range(len(bodies.rows)):
         if of_kind(bodies, i, FILLED) > 0.0:
             for copy in range(3 if slides(now.box) else 1):
-                draw_gas(worker, now, physics, bodies, i, copy - 1 if slides(now.box) else 0)
+                draw_gas(worker, now, physics, fluid, bodies, i, copy - 1 if slides(now.box) else 0)
     barrier(worker)
+    add_others(worker, bodies, bodies.sums, 0)
     low, high = share(len(bodies.rows), thread, worker.threads)
     for i in range(low, high):
         take_noise(worker, physics, bodies, i)
@@ -110,7 +114,7 @@ def draw_all_gas(worker, now, physics, fluid, bodies):
 
 
 @seldom
-def draw_gas(worker, now, physics, bodies, i, copy):
+def draw_gas(worker, now, physics, fluid, bodies, i, copy):
     """The gas in this thread's layers of cells around body i; of images `copy` boxes up."""
     zero, grid, d, box = physics.zero, now.grid, len(physics.zero), now.box
     x, radius = load(bodies.rows, i, PLACE, zero), of_kind(bodies, i, RADIUS)
@@ -135,8 +139,12 @@ def draw_gas(worker, now, physics, bodies, i, copy):
                 middle = with_item(middle, 1, low[1] + b + 0.5 - grid.origin[1])
             for a in range(int(high[0] - low[0]) + 1):
                 middle = with_item(middle, 0, low[0] + a + 0.5 - grid.origin[0])
+                if not is_own_cell(fluid.cells.shared, grid, middle):
+                    continue
                 if is_cut(bodies, i, added_scaled(middle, -1.0, x)):
-                    fill_cell_of_body(worker, now, physics, bodies, i, x, speed, middle)
+                    at = GasCell(i, x, speed, middle, np.int64(cell_index(middle, grid)))
+                    key = np.int64(key_of(fluid.cells.shared, at.cell))
+                    fill_cell_of_body(worker, now, physics, bodies, at, key)
 
 
 @where("(x, zero)", box=lambda box: box.instance_class in SLIDING)
@@ -163,13 +171,24 @@ def is_cut(bodies, i, s):
     return abs(depth_at(bodies, i, s)) < HALF_DIAGONAL
 
 
+class GasCell(NamedTuple):
+    """A cell that a body cuts: the number of the body, its centre, the speed of this image along
+    x, the middle of the cell, and the number of the cell."""
+
+    body: int
+    centre: tuple
+    speed: float
+    middle: tuple
+    cell: int
+
+
 @seldom
-def fill_cell_of_body(worker, now, physics, bodies, i, x, speed, middle):
+def fill_cell_of_body(worker, now, physics, bodies, at, cell_key):
     """The gas of body i in a cell: places of an ideal gas, of which those in the body are kept."""
     thread, counter = worker.thread, now.counter
     gas, here = bodies.gas[thread], bodies.counters[thread]
-    cell = np.int64(cell_index(middle, now.grid))
-    key = np.int64(i) * np.int64(bodies.cells + 1) + cell
+    i, x, speed, middle, cell = at
+    key = np.int64(i) * np.int64(bodies.cells + 1) + cell_key
     m, mean = bodies.gas_mass, bodies.density * of_kind(bodies, i, FILLED)
     width = math.sqrt(physics.kT / m)
     found = no_moments(middle)
@@ -269,6 +288,7 @@ def take_recoil(worker, now, physics, fluid, bodies):
         turn = scaled(1.0 / bodies.lever, outer(arm, p))
         add_integers(taken[len(zero) :], added_quanta(turn, scale, integers(turn)))
     barrier(worker)
+    add_others(worker, bodies, bodies.taken, 0)
     low, high = share(len(bodies.rows), thread, worker.threads)
     for body in range(low, high):
         take_impulses(worker, physics, bodies, body)

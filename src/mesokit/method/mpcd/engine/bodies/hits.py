@@ -35,7 +35,7 @@ from mesokit.method.mpcd.engine.bodies.near import (
     body_near,
     box_at_start,
 )
-from mesokit.method.mpcd.engine.bodies.put_back import put_all_back
+from mesokit.method.mpcd.engine.bodies.put_back import note_all_migrants, put_all_back
 from mesokit.method.mpcd.engine.bodies.state import (
     ANGLE,
     ARM,
@@ -93,6 +93,7 @@ from mesokit.method.mpcd.engine.cpu.bounce import fly_among, take_sum
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.physics import field_of, has_solid, momentum_scale
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass
+from mesokit.method.mpcd.engine.domains.messages.bodies import add_others, hits_elsewhere
 from mesokit.method.mpcd.engine.embedded.near import note
 from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.field.none import Zero
@@ -141,10 +142,8 @@ def reflect_all(worker, now, physics, fluid, bodies):
                 hits += find_hit(worker, now, physics, fluid, bodies, j, n, trial)
         here[HITS] = hits
         barrier(worker)
-        total = 0
-        for t in range(worker.threads):
-            total += bodies.counters[t, HITS]
-        if total == 0:
+        add_others(worker, bodies, bodies.sums, hits_of_threads(worker, bodies))
+        if hits_of_threads(worker, bodies) + hits_elsewhere(bodies) == 0:
             break
         for i in range(low, high):
             solve_body(worker, physics, bodies, i, scales, trial)
@@ -158,6 +157,7 @@ def reflect_all(worker, now, physics, fluid, bodies):
         bodies.sums[thread] = 0
         barrier(worker)
         if not trial:
+            add_others(worker, bodies, bodies.taken, 0)
             for i in range(low, high):
                 take_impulses(worker, physics, bodies, i)
             barrier(worker)
@@ -168,7 +168,17 @@ def reflect_all(worker, now, physics, fluid, bodies):
     if now.flags & MEASURE_STRESS:
         add_near_flux(thread, physics, now, fluid, bodies)
     put_all_back(worker, now, physics, fluid, bodies)
+    note_all_migrants(worker, now, physics, fluid)
     barrier(worker)
+
+
+@scalar
+def hits_of_threads(worker, bodies):
+    """Hits of all threads in this round."""
+    total = 0
+    for t in range(worker.threads):
+        total += bodies.counters[t, HITS]
+    return total
 
 
 @scalar

@@ -122,11 +122,17 @@ class BodyReadings:
 
     def counts(self) -> dict[str, int]:
         """Second hits and particles put back in the last step."""
-        counters = self.state_of.counters
-        return {
-            "second hits": int(counters[:, SECOND_HITS].sum()),
-            "put back": int(counters[:, PUT_BACK].sum()),
-        }
+        counters = self.state_of.counters[:, [SECOND_HITS, PUT_BACK]].sum(axis=0)
+        second, put_back = self.reduced(counters).tolist()
+        return {"second hits": second, "put back": put_back}
+
+    def reduced(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The sum over all ranks; here there is one."""
+        return numbers
+
+    def forget_lists(self) -> None:
+        """Lists are made anew at the next step."""
+        self.state_of.rows[:, PATH] = MAKE_LISTS
 
     def inertia(self, kind: int) -> Floats:
         """Of a kind, in its own frame (3, 3)."""

@@ -83,7 +83,7 @@ class MovingBodies(NamedTuple):
     (threads, WORK), chosen (threads, LANES): scratch memory; waste: what walls take by flights that
     do not count.
     solid: walls as the potential of gaps sees them, or (). pull: the uniform acceleration of all
-    that balances forces on bodies.
+    that balances forces on bodies. messages: to other ranks, or ().
     """
 
     rows: Any
@@ -124,6 +124,7 @@ class MovingBodies(NamedTuple):
     waste: Any
     solid: tuple
     pull: tuple
+    messages: Any
 
 
 THREE = (0.0, 0.0, 0.0)

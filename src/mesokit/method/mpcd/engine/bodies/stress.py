@@ -22,6 +22,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
 )
 from mesokit.method.mpcd.engine.cpu.stress import add_product, add_terms, carried, within_cell
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle
+from mesokit.method.mpcd.engine.domains.messages.bodies import counts_for_all
 from mesokit.scalar.fixed_point import (
     ROUNDER_BITS,  # noqa: F401  the text of a function above uses it
     add_fixed,
@@ -71,7 +72,7 @@ def add_near_flux(thread, physics, now, fluid, bodies):
 def add_body_flux(worker, physics, now, bodies, part):
     """Add what bodies carry, before or after the collision."""
     first, last = share(len(bodies.rows), worker.thread, worker.threads)
-    for i in range(first, last):
+    for i in range(first, last if counts_for_all(bodies) else first):
         x, v = (
             load(bodies.rows, i, PLACE, physics.zero),
             load(bodies.rows, i, VELOCITY, physics.zero),
@@ -100,4 +101,5 @@ def add_gas_gain(thread, physics, now, bodies, r, arm, gain):
 def add_gaps(thread, physics, bodies, virial):
     """Add impulses of gaps times separations."""
     d = len(physics.zero)
-    add_terms(bodies.tensor[thread, AFTER, d * d :], physics.stress_scale, virial)
+    if counts_for_all(bodies):
+        add_terms(bodies.tensor[thread, AFTER, d * d :], physics.stress_scale, virial)

@@ -16,9 +16,11 @@ from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREA
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.sweep import add_strip_flux
+from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
 from mesokit.method.mpcd.engine.where import where
 
 KEEP, RESTORE = 0, 1
+WAITING = -1  # the cell of a particle that has not flown yet
 
 
 @where(box=lambda box: box.instance_class in SLIDING)
@@ -81,6 +83,8 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
             stages.bin_strip(physics, now, strip, cell, ids, terms)
             for j in range(near):
                 cell[chosen[j]] = fluid.cells.number  # which takes what must not act
-            stages.add_strip(
-                cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero)
-            )
+            tallied = tally(physics.energy, 0.0, zero)
+            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied)
+            for j in range(near):
+                cell[chosen[j]] = WAITING
+            note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)

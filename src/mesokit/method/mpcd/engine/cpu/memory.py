@@ -69,7 +69,7 @@ class Memory:
             self.solutes = allocate_beads(case.solutes, self)._replace(embedded=embedded)
         self.bodies: Any = ()
         if case.bodies:
-            self.bodies = allocate_bodies(numbers, threads, self.numbers_taken)
+            self.bodies = allocate_bodies(numbers, threads, self.numbers_taken, domain)
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
         if domain is not None:

@@ -16,6 +16,7 @@ from mesokit.method.mpcd.engine.domains.beads.halo_memory import halo_of, reach_
 from mesokit.method.mpcd.engine.domains.blocks import region
 from mesokit.method.mpcd.engine.domains.blocks.region import Space, region_of
 from mesokit.method.mpcd.engine.domains.blocks.tree import Block, Tree
+from mesokit.method.mpcd.engine.domains.messages.bodies import body_messages
 from mesokit.method.mpcd.engine.domains.messages.mpi import post
 from mesokit.method.mpcd.engine.domains.messages.shared import METER_SIZE, Shared
 from mesokit.method.mpcd.engine.virtual.gradient import PROBES
@@ -199,6 +200,10 @@ class Domain:
     def halo(self, given: Solutes, terms: int) -> Any:
         """Memory for the halo of beads of solutes."""
         return halo_of(self, given, terms)
+
+    def body_messages(self, bodies: int, width: int) -> Any:
+        """Memory for messages about bodies."""
+        return body_messages(self.comm, bodies, width, self.crowded)
 
     def seen(self, probes: NDArray[np.float64]) -> FlowAtSurface:
         """The pieces of surface near this rank's block, and near those of its partners."""

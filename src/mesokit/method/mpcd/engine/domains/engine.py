@@ -82,7 +82,7 @@ class Ranks(CPU):
         before = self.readings if earlier is not None else None
         self.readings = SharedReadings(self.memory, self.threads, self.comm)
         self.readings.go_on_from(before)
-        self.solutes = self.readings.solutes
+        self.solutes, self.bodies = self.readings.solutes, self.readings.bodies
 
     # --- running --------------------------------------------------------------------------------
 
@@ -135,6 +135,10 @@ class Ranks(CPU):
             beads, before = new.solutes, memory.solutes
             beads.r[:], beads.v[:] = before.r, before.v
             beads.halo.numbers[:], beads.halo.count[:] = before.halo.numbers, before.halo.count
+        if memory.bodies:
+            new.bodies.rows[:] = memory.bodies.rows
+            new.bodies.faults[:] = memory.bodies.faults
+            self.readings.bodies.forget_lists()
 
     def _steps(self, steps: int, what: int) -> None:
         left = steps

@@ -37,6 +37,8 @@ class SharedReadings(Readings):
         self.counts_solutes = comm.rank == ROOT  # beads are read on all ranks and counted on one
         if memory.solutes:
             self.solutes = SharedSolutes(memory, comm)
+        if self.bodies is not None:
+            self.bodies.reduced = self.reduced
         self._sorted: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
 
     def forget(self) -> None:

@@ -17,6 +17,7 @@ from mesokit.method.mpcd.engine.cpu.strips.rows import (
     store_particle,
 )
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
+from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghost
 from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.jit import optional, seldom
 from mesokit.scalar.vector import added_scaled
@@ -37,8 +38,10 @@ def put_one(worker, now, physics, fluid, lane, start, r, v):
     particles.cell[lane] = cell_index(r, now.grid)
     store_particle(strip, i, 0, r + kept)
     place = np.uint64(np.uint32(particles.cell[lane])) * np.uint64(sums_length(len(physics.terms)))
-    sums[place] += optional(tally(physics.energy, m, v), 1)
-    add_values(sums, place + np.uint64(1), terms_of(physics, m, v, own))
+    terms, tallied = terms_of(physics, m, v, own), optional(tally(physics.energy, m, v), 1)
+    sums[place] += tallied
+    add_values(sums, place + np.uint64(1), terms)
+    note_ghost(worker, fluid, lane, terms, tallied)
 
 
 @where(physics=has_solid)

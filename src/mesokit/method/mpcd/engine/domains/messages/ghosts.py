@@ -49,6 +49,26 @@ def _note_lanes(worker, s, cells, cell, terms_rows, lanes, terms, tallied):
                 shared.ghost_terms[thread, n, 1 + k] = terms_rows[k * SCRATCH_ROW + i]
 
 
+@where(fluid=shares)
+def note_ghost(worker, fluid, lane, terms, tallied):
+    """Note the particle in a lane, counted through the strips, if it is a ghost.
+
+    What the spare cell has of it is cleared by `note_ghosts`.
+    """
+    cells, thread = fluid.cells, worker.thread
+    if fluid.particles.cell[lane] == cells.number:
+        shared = cells.shared
+        n = shared.ghosts[thread, 0]
+        if n == shared.ghost_place.shape[1]:
+            shared.noted[FAULTS] |= FULL
+        else:
+            shared.ghosts[thread, 0] = n + 1
+            shared.ghost_place[thread, n] = lane
+            shared.ghost_terms[thread, n, 0] = tallied
+            for k in range(len(terms)):
+                shared.ghost_terms[thread, n, 1 + k] = terms[k]
+
+
 @scalar
 def owner_of(shared, place):
     """The partner that owns a cell, and its number there; NO_OWNER if no partner owns it."""
