@@ -141,10 +141,10 @@ class BodyFrames:
     def _room(self) -> tuple[float, float]:
         if self.third is None:
             return 0.0, 0.0
-        way = towards(self.columns)
-        back, front = sorted((0.0, way * float(self.case.box.size[self.third])))
+        sign = towards(self.columns)
+        back, front = sorted((0.0, sign * float(self.case.box.size[self.third])))
         if self.behind and self.plane is not None:
-            front = way * self.plane
+            front = sign * self.plane
         return back, front
 
     def _placed(self, places: Array, turns: Array, time: float) -> list[Placed]:
