@@ -27,8 +27,6 @@ from mesokit import (
     Solutes,
     Species,
     Sphere,
-    Stress,
-    StressInTime,
     Uniform,
 )
 from mesokit.method.mpcd.body.capsule import CapsuleBody
@@ -327,14 +325,6 @@ CASES = {
     "beads": (
         3, [SPHERE], {"solutes": Solutes([Polymer(3)])},
         "solutes: not with bodies yet; leave one of both out",
-    ),
-    "stress": (
-        3, [SPHERE], {"observe": [Stress()]},
-        "observe[#1].quantity = 'stress': not with bodies yet, which carry stress too",
-    ),
-    "stress in time": (
-        3, [SPHERE], {"observe": [StressInTime()]},
-        "observe[#1].quantity = 'stress-in-time': not with bodies yet, which carry stress too",
     ),
 }  # fmt: skip
 

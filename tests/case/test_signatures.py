@@ -34,8 +34,11 @@ def test_signatures_can_be_read() -> None:
     )
 
 
+NEED_ONE = {"BodyTrap", "Squirming"}  # of several parameters, so that defaults alone are refused
+
+
 def test_defaults_are_those_that_hold() -> None:
-    for part in COMPONENTS:
+    for part in [part for part in COMPONENTS if part.__name__ not in NEED_ONE]:
         given = inspect.signature(part).parameters
         if inspect.isabstract(part) or any(p.default is p.empty for p in given.values()):
             continue

@@ -11,7 +11,7 @@ from mesokit.method.mpcd.body.spheroid import SpheroidBody
 from mesokit.method.mpcd.body.union import UnionBody
 
 L_SHAPE = (Rectangle(centre=(0, 0), size=(6, 2)), Rectangle(centre=(2, 2.5), size=(2, 3)))
-DUMBBELL = (Sphere(centre=(-1.9, 0, 0), radius=2), Sphere(centre=(1.6, 0, 0), radius=1.4))
+DUMBBELL = (Sphere(centre=(-1.6, 0, 0), radius=1.7), Sphere(centre=(1.4, 0, 0), radius=1.3))
 PLANAR = {
     "disk": (DiskBody, {"radius": 2}),
     "ellipse": (EllipseBody, {"size": (6, 3)}),

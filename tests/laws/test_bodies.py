@@ -70,6 +70,27 @@ def test_bodies_have_the_temperature_of_the_fluid(name, virtual):
     assert mean(rotation).error < 0.04  # the test can tell
 
 
+@pytest.mark.parametrize("virtual", ["fill", "none"])
+@pytest.mark.parametrize("name", ["disk", "rectangle"])
+def test_the_pressure_around_bodies_is_that_of_the_free_fluid(name, virtual):
+    """n kT with the density outside: the stress has what bodies give particles, and the other way
+    round. The bodies themselves add a thousandth."""
+    some = body(name, 2, number=6, virtual=virtual)
+    fluid = make_fluid(
+        (24, 24), bodies=[some], thermostat=MaxwellBoltzmann(), measures=("stress",), **FAST
+    )
+    fluid.advance(50)
+    pressures = []
+    for _ in range(300):
+        fluid.advance(2)
+        fluid.advance(1, measure=["stress"])
+        pressures.append([-np.trace(part) / 2 for part in fluid.stress.values()])
+    kinetic, collisional = np.mean(pressures, axis=0)
+    found = mean(blocks(np.sum(pressures, axis=1)))
+    assert found.agrees(10 + 6 / 576, systematic=0.005), found
+    assert kinetic < 8.8 and collisional > 1.2 and found.error < 0.1
+
+
 KINDS = {
     "2D": {"size": ROOM[2], "bodies": SOME[2]},
     "3D": {"size": ROOM[3], "bodies": SOME[3]},

@@ -211,8 +211,8 @@ def _turning_bodies(case: Case, numbers: Derived) -> Iterator[str]:
     if not (turning and rule.acts) or "angular momentum" in rule.conserves:
         return
     friction = "a lower rotational friction"
-    if numbers.transport is not None:
-        share = numbers.transport.viscosity_collisional / numbers.transport.viscosity
+    if numbers.solvent is not None:
+        share = numbers.solvent.viscosity_collisional / numbers.solvent.viscosity
         kept, one = 1.0 - share / (2 if d == 2 else 3), "disk" if d == 2 else "sphere"
         friction = f"{kept:.2g} of the rotational friction of a {one}"
     yield (

@@ -14,7 +14,7 @@ from mesokit.geometry import primitive
 from mesokit.geometry.primitive import PRIMITIVES
 from mesokit.geometry.primitive.moments import Integrals, plane
 from mesokit.geometry.region import Part, Region, moved
-from mesokit.kernels.kernel import kernel
+from mesokit.kernels.later import kernel
 from mesokit.scalar.pointer import address
 from mesokit.scalar.vector import row
 

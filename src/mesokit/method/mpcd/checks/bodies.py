@@ -65,10 +65,6 @@ def _not_yet(case: Case) -> Iterator[str]:
         yield "solutes: not with bodies yet; leave one of both out"
     if rule.gradient_of is not None:
         yield f"fluid.collision.rule = {show(name_of(rule))}: not with bodies yet; use 'srd'"
-    for i, observable in enumerate(case.observe, start=1):
-        if "stress" in observable.measures:
-            name = show(name_of(observable))
-            yield f"observe[#{i}].quantity = {name}: not with bodies yet, which carry stress too"
 
 
 def _shape(case: Case, kind: Body) -> Iterator[str]:

@@ -304,7 +304,7 @@ def units(case: Case) -> Iterator[str]:
             "units.match = 'peclet': only in 3D; the diffusion of a disc in a 2D fluid depends on "
             "the box (Stokes' paradox); use 'reynolds' or 'thermal'"
         )
-    caveat, matched = setting.caveat(case), MATCHES[given.match]
+    caveat, matched = setting.caveat_of_fluid(case), MATCHES[given.match]
     if caveat and not {"dynamic_viscosity", "sound_speed"}.isdisjoint(matched):
         yield f"units.match = {show(given.match)}: {caveat}; only 'thermal' does without"
     if any(math.isnan(getattr(given.fluid.properties(), name)) for name in matched):

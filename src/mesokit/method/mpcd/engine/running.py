@@ -126,6 +126,8 @@ class Running(ABC):
             memory.clear_stress()
             if self.solutes is not None:
                 self.solutes.state_of.tensor[:] = 0.0
+            if self.bodies is not None:
+                self.bodies.state_of.tensor[:] = 0
         self._steps(steps, what)
         self.readings.wall_steps += steps
         molecule, springs = self.case.fluid.molecule, memory.physics.molecule

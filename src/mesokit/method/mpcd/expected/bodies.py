@@ -8,12 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.body.protocol import named
 from mesokit.method.mpcd.columns import holds, kinds_of_bodies, total_mass, turns
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.groups import fluid_mass_density
 
 Floats = NDArray[np.float64]
 KIND_OF_BODY = "which kind of bodies: name or number, from 1"
@@ -90,19 +92,102 @@ class Followed(NamedTuple):
 
     def diffusion(self) -> tuple[float, str]:
         """Diffusion coefficient of the centres in this box."""
-        return math.nan, ""
+        mobility, why = self.mobility()
+        return (float(self.case.fluid.kT) * mobility, why) if self.thermal else (math.nan, "")
 
     def rotational_diffusion(self) -> tuple[float, str]:
         """Rotational diffusion coefficient."""
-        return math.nan, ""
+        mobility, why = self.rotational_mobility()
+        return (float(self.case.fluid.kT) * mobility, why) if self.thermal else (math.nan, "")
 
     def mobility(self) -> tuple[float, str]:
         """Velocity over force in this box."""
-        return math.nan, ""
+        known = self.alone_in_a_cube()
+        if known is None or self.kind.swim or holds(self.case):
+            return math.nan, ""
+        radius, length, viscosity = known
+        friction = theory.sphere_friction_in_cube
+        if self.case.box.dimension == 2:
+            friction = theory.disk_friction_in_square
+        slip, why = self.slip
+        light = 1.0 - (self.mass - self.displaced) / total_mass(self.case, self.all_moving)
+        return light**2 / friction(radius, length, viscosity, slip), why
 
     def rotational_mobility(self) -> tuple[float, str]:
         """Angular velocity over torque."""
-        return math.nan, ""
+        known = self.alone_in_a_cube()
+        if known is None or self.kind.swim or not self.turning:
+            return math.nan, ""
+        (radius, length, viscosity), (slip, why) = known, self.slip
+        d, share = self.case.box.dimension, self.asymmetric_share
+        if share:
+            why = f"{why}; the limit of a large body, as the rule turns it too easily"
+        return 1.0 / theory.rotational_friction(radius, viscosity, d, length, slip, share), why
+
+    def swimming_speed(self) -> tuple[float, str]:
+        """Speed of a squirmer along its own axis."""
+        known, kind = self.alone_in_a_cube(), self.kind
+        if known is None or kind.swim is None or holds(self.case) or np.any(kind.force or 0.0):
+            return math.nan, ""
+        (radius, length, _), (slip, why) = known, self.slip
+        d = self.case.box.dimension
+        speed, fraction = theory.squirmer_speed(kind.swim.B1, d), kind.solid(d).volume / length**d
+        share = self.asymmetric_share
+        return theory.squirmer_speed_in_box(speed, fraction, slip / radius, share), why
+
+    @property
+    def asymmetric_share(self) -> float:
+        """The share of the viscosity that does not conserve angular momentum."""
+        coefficients = setting.solvent(self.case)
+        if "angular momentum" in self.case.fluid.collision.conserves or coefficients is None:
+            return 0.0
+        return coefficients.viscosity_collisional / coefficients.viscosity
+
+    @property
+    def all_moving(self) -> int:
+        """Number of particles and bodies."""
+        return sum(group.number for group in self.case.groups)
+
+    @property
+    def displaced(self) -> float:
+        """Mass of the fluid in the place of a body."""
+        volume = self.kind.solid(self.case.box.dimension).volume
+        return fluid_mass_density(self.case) * volume
+
+    def alone_in_a_cube(self) -> tuple[float, float, float] | None:
+        """Radius, side and dynamic viscosity of a single no-slip ball in a periodic cube or square
+        at rest; None of anything else."""
+        case, d = self.case, self.case.box.dimension
+        solid, coefficients = self.kind.solid(d), setting.solvent(case)
+        alone = len(case.bodies) == 1 and self.number == 1 and solid.ball
+        still = not (case.walls or case.box.sheared or case.fluid.force.acts)
+        sticks = self.kind.surface == "no-slip" and len(set(case.box.size)) == 1
+        if not (alone and still and sticks) or coefficients is None:
+            return None
+        viscosity = coefficients.viscosity * fluid_mass_density(case)
+        return solid.radius, float(case.box.size[0]), viscosity
+
+    @property
+    def slip(self) -> tuple[float, str]:
+        """The slip length of its surface, from channels with plates of the same rule, and a note.
+
+        Between the mean free paths of those it is interpolated (docs/validation/wall_slip.md).
+        """
+        known = SLIP_LENGTHS[self.case.box.dimension, self.kind.virtual]
+        path = np.log(setting.mean_free_path(self.case))
+        slip = float(np.exp(np.interp(path, np.log(PATHS), np.log(known))))
+        return slip, f"with a slip length of {slip:.2g} a, as of plates"
+
+
+# Mean free paths, and slip lengths of plates that were measured there. In 2D those of 0.1 alone,
+# the others in proportion to 3D.
+PATHS = (0.02, 0.1, 0.5)
+SLIP_LENGTHS = {
+    (3, "fill"): (0.242, 0.151, 0.080),
+    (3, "none"): (5.797, 0.928, 0.049),
+    (2, "fill"): (0.353, 0.220, 0.117),
+    (2, "none"): (8.25, 1.320, 0.070),
+}
 
 
 def followed(case: Case, quantity: str, kind: int | str = 1) -> Followed:

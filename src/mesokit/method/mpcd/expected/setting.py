@@ -36,9 +36,9 @@ def of_gas(case: Case) -> theory.Transport | None:
 
 
 def solvent(case: Case) -> theory.Transport | None:
-    """Transport coefficients of a fluid of single particles without the solutes that are in it."""
-    fluid = case.fluid
-    if case.solutes is None or fluid.mixed or fluid.molecule is not None or fluid.grid_shift < 1:
+    """Transport coefficients of a fluid of single particles without the solutes or bodies in it."""
+    fluid, alone = case.fluid, case.solutes is None and not case.bodies
+    if alone or fluid.mixed or fluid.molecule is not None or fluid.grid_shift < 1:
         return None
     return of_gas(case) if fluid.collision.acts else None
 
@@ -51,6 +51,11 @@ def gas(case: Case) -> Gas:
 
 def caveat(case: Case) -> str:
     """Reason for which there is no theory of the transport coefficients; "" if there is one."""
+    return caveat_of_fluid(case) or ("no theory of a fluid with bodies" if case.bodies else "")
+
+
+def caveat_of_fluid(case: Case) -> str:
+    """The same of the fluid around bodies."""
     if not case.fluid.collision.acts:
         return "there are none without collisions"
     if case.fluid.mixed:

@@ -70,7 +70,9 @@ class BodyDriftAccumulator(BlockAccumulator):
         mean, error = self.blocks.mean().tolist(), self.blocks.error().tolist()
         rest = np.nan if setting.driven(self.case) else 0.0
         for k, name in enumerate(names):
-            yield Comparison(name, mean[k], error[k], rest, self._unit(k))
+            known, why = (rest, "") if k != self.dimension else self.of.swimming_speed()
+            known = rest if np.isnan(known) else known
+            yield Comparison(name, mean[k], error[k], known, self._unit(k), why)
         kind, d = self.of.kind, self.dimension
         if kind.frame == "body":
             return

@@ -177,6 +177,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int) -> MovingBodies:
         gas_number=zeros((threads, most_gas), np.int64),
         gas_cell=zeros((threads, most_gas), np.int64),
         gas_body=zeros((threads, most_gas), np.int64),
+        tensor=zeros((threads, 2, 2 * d * d), np.int64),
         counters=zeros((threads, state.COUNTERS), np.int64),
         faults=zeros((threads, 8), np.int64),
         work=zeros((threads, state.WORK)),

@@ -39,7 +39,7 @@ from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.method.mpcd.streaming import vector
 from mesokit.scalar.jit import by_type, scalar, seldom
-from mesokit.scalar.vector import added, added_scaled, dot, first, outer, scaled
+from mesokit.scalar.vector import added, added_scaled, dot, first, outer, products, scaled
 
 STEEPEST = 0.02  # of the range: where the gap is less, the force is that there
 MOST_TRIES = 200
@@ -48,11 +48,12 @@ CLOSE = 1e-9  # cells: two steps of a search that differ by less have arrived
 
 @seldom
 def forces_on(bodies, physics, box, i, zero):
-    """Force and torque on body i where it is."""
+    """Force and torque on body i where it is, and its half of the virial of gaps with others."""
     kind, q, x = bodies.kind[i], load(bodies.rows, i, TURN, FOUR), load(bodies.rows, i, PLACE, zero)
-    force, torque = (
-        load(bodies.kinds, kind, FORCE_GIVEN, zero),
+    force = load(bodies.kinds, kind, FORCE_GIVEN, zero)
+    torque, virial = (
         load(bodies.kinds, kind, TORQUE_GIVEN, THREE),
+        products(scaled(0.0, zero), zero),
     )
     if bodies.kinds[kind, IN_BODY_FRAME] > 0.5:
         force, torque = rotated(q, force), rotated(q, torque)
@@ -73,11 +74,12 @@ def forces_on(bodies, physics, box, i, zero):
         for n in range(len(bodies.rows) if number == EVERY_BODY else number):
             j = n if number == EVERY_BODY else np.int64(bodies.partners[i, n])
             if j != i:
-                given, twist = force_between(bodies, box, i, j, x, q)
+                given, twist, apart = force_between(bodies, box, i, j, x, q)
                 force, torque = added(force, given), added(torque, twist)
+                virial = added(virial, products(scaled(0.5, given), apart))
         given, twist = force_of_walls(bodies, physics, i, x, q)
         force, torque = added(force, given), added(torque, twist)
-    return force, torque
+    return force, torque, virial
 
 
 @by_type
@@ -103,11 +105,12 @@ def force_of_gap(depth, reach, gap):
 
 @seldom
 def force_between(bodies, box, i, j, x, q):
-    """Force and torque on body i, at x, by body j: repulsion by the gap of all pairs of parts."""
+    """Force and torque on body i, at x, by body j: repulsion by the gap of all pairs of parts; also
+    the separation of their centres."""
     depth = bodies.kinds[bodies.kind[j], DEPTH]
     force, torque = scaled(0.0, x), THREE
     if depth == 0.0:
-        return force, torque
+        return force, torque, force
     depth = math.sqrt(depth * of_kind(bodies, i, DEPTH))
     reach = 0.5 * (of_kind(bodies, i, RANGE) + of_kind(bodies, j, RANGE))
     other, _ = image_near(box, load(bodies.rows, j, PLACE, x), x)
@@ -115,16 +118,16 @@ def force_between(bodies, box, i, j, x, q):
     distance = math.sqrt(dot(away, away))
     gap = distance - of_kind(bodies, i, RADIUS) - of_kind(bodies, j, RADIUS)
     if gap >= reach:
-        return force, torque
+        return force, torque, away
     if of_kind(bodies, i, IS_BALL) > 0.5 and of_kind(bodies, j, IS_BALL) > 0.5:
-        return scaled(force_of_gap(depth, reach, gap) / distance, away), torque
+        return scaled(force_of_gap(depth, reach, gap) / distance, away), torque, away
     p = load(bodies.rows, j, TURN, FOUR)
     for a in range(int(of_kind(bodies, i, FIRST_PART)), int(of_kind(bodies, i, PARTS_END))):
         for b in range(int(of_kind(bodies, j, FIRST_PART)), int(of_kind(bodies, j, PARTS_END))):
             mine, theirs = nearest_places(bodies, a, x, q, b, other, p)
             given, arm = force_along(mine, theirs, depth, reach), added_scaled(mine, -1.0, x)
             force, torque = added(force, given), added(torque, whole_spin(outer(arm, given)))
-    return force, torque
+    return force, torque, away
 
 
 @scalar

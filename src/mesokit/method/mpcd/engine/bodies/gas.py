@@ -51,7 +51,14 @@ from mesokit.method.mpcd.engine.bodies.state import (
     swept,
     with_shear,
 )
+from mesokit.method.mpcd.engine.bodies.stress import (
+    AFTER,
+    BEFORE,
+    add_body_flux,
+    add_gas_gain,
+)
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
+from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import add_values, load_values
@@ -83,6 +90,8 @@ def draw_all_gas(worker, now, physics, fluid, bodies):
     """Draw the gas of all bodies at t + dt, and add it to the sums of its cells."""
     thread, here = worker.thread, bodies.counters[worker.thread]
     here[GAS_COUNT] = 0
+    if now.flags & MEASURE_STRESS:
+        add_body_flux(worker, physics, now, bodies, BEFORE)
     # First the gas of this thread's part of each body: places, thermal velocities, and the sums
     # that say how much of their noise is that of the body. A body is solved by one thread. Then
     # each thread completes its own particles and adds them to its own sums of cells.
@@ -254,10 +263,15 @@ def take_recoil(worker, now, physics, fluid, bodies):
         taken = bodies.taken[thread, i]
         add_integers(taken, units)
         p = scaled(1.0 / scale, floats(units))
-        turn = scaled(1.0 / bodies.lever, outer(load(gas, n, GAS_ARM, zero), p))
+        arm = load(gas, n, GAS_ARM, zero)
+        if now.flags & MEASURE_STRESS:
+            add_gas_gain(thread, physics, now, bodies, r, arm, p)
+        turn = scaled(1.0 / bodies.lever, outer(arm, p))
         add_integers(taken[len(zero) :], added_quanta(turn, scale, integers(turn)))
     barrier(worker)
     low, high = share(len(bodies.rows), thread, worker.threads)
     for body in range(low, high):
         take_impulses(worker, physics, bodies, body)
+    if now.flags & MEASURE_STRESS:
+        add_body_flux(worker, physics, now, bodies, AFTER)
     barrier(worker)

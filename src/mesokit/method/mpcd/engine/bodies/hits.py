@@ -87,9 +87,10 @@ from mesokit.method.mpcd.engine.bodies.state import (
     store,
     with_shear,
 )
+from mesokit.method.mpcd.engine.bodies.stress import AFTER, add_impulse, add_near_flux
 from mesokit.method.mpcd.engine.bodies.swim import squirming
 from mesokit.method.mpcd.engine.cpu.bounce import fly_among, take_sum
-from mesokit.method.mpcd.engine.cpu.groups import STREAM
+from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.physics import field_of, has_solid, momentum_scale
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass
 from mesokit.method.mpcd.engine.embedded.near import note
@@ -152,7 +153,7 @@ def reflect_all(worker, now, physics, fluid, bodies):
             if trial:
                 begin_again(bodies, thread, j)
             elif bodies.numbers[thread, j, GOING] != 0:
-                reflect(worker, physics, fluid, bodies, j)
+                reflect(worker, now, physics, fluid, bodies, j)
                 here[SECOND_HITS] += np.int64(n > bodies.twice)
         bodies.sums[thread] = 0
         barrier(worker)
@@ -164,6 +165,8 @@ def reflect_all(worker, now, physics, fluid, bodies):
         finish_body(bodies, i, now, physics)
     barrier(worker)
     finish_flights(worker, now, physics, fluid, bodies)
+    if now.flags & MEASURE_STRESS:
+        add_near_flux(thread, physics, now, fluid, bodies)
     put_all_back(worker, now, physics, fluid, bodies)
     barrier(worker)
 
@@ -542,7 +545,7 @@ def solve_body(worker, physics, bodies, i, scales, trial):
 
 
 @seldom
-def reflect(worker, physics, fluid, bodies, j):
+def reflect(worker, now, physics, fluid, bodies, j):
     """Velocity of a particle after its hit; the body takes the opposite of its impulse."""
     thread, values = worker.thread, bodies.values[worker.thread]
     i, lane = bodies.numbers[thread, j, BODY], bodies.numbers[thread, j, LANE]
@@ -559,6 +562,8 @@ def reflect(worker, physics, fluid, bodies, j):
     v = added_scaled(v, 1.0 / (scale * m), floats(units))
     store(values, j, V, v)
     p = scaled(1.0 / scale, floats(units))
+    if now.flags & MEASURE_STRESS:
+        add_impulse(thread, physics, bodies, AFTER, s, p)
     turn = scaled(1.0 / bodies.lever, outer(s, p))
     taken = bodies.taken[thread, i]
     add_integers(taken, opposite(units))

@@ -41,13 +41,14 @@ from mesokit.method.mpcd.engine.bodies.state import (
     store,
     turn_by,
 )
-from mesokit.method.mpcd.engine.cpu.groups import STREAM
+from mesokit.method.mpcd.engine.bodies.stress import add_gaps
+from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, STREAM
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.random import BODY_TUMBLE, unit_open, words
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
-ROUNDS_OF_TURN = 8
+ROUNDS_OF_TURN = 16
 
 
 @stage
@@ -58,7 +59,7 @@ def begin_step(worker, now, physics, bodies):
     """
     if not now.flags & STREAM:
         return
-    rows, box, n = bodies.rows, box_at_start(now, physics), bodies.substeps
+    rows, n = bodies.rows, bodies.substeps
     first, last = share(len(rows), worker.thread, worker.threads)
     time = physics.timestep / n
     for i in range(first, last):
@@ -71,14 +72,14 @@ def begin_step(worker, now, physics, bodies):
     # Kick, drift, kick: forces at the beginning of a sub-step are those at the end of the last.
     # Threads meet after each drift, because forces need the places of all bodies.
     for i in range(first, last):
-        kick_body(bodies, physics, box, i, 0.5 * time)
+        kick_body(worker, now, physics, bodies, i, 0.5 * time)
     barrier(worker)
     for k in range(n):
         for i in range(first, last):
             drift_body(bodies, physics, i, time)
         barrier(worker)
         for i in range(first, last):
-            kick_body(bodies, physics, box, i, (0.5 if k == n - 1 else 1.0) * time)
+            kick_body(worker, now, physics, bodies, i, (0.5 if k == n - 1 else 1.0) * time)
         barrier(worker)
     for i in range(first, last):
         begin_motion(bodies, physics, i)
@@ -87,10 +88,13 @@ def begin_step(worker, now, physics, bodies):
 
 
 @seldom
-def kick_body(bodies, physics, box, i, time):
+def kick_body(worker, now, physics, bodies, i, time):
     """Change of the velocities of body i by the forces where it is."""
     rows, kind, zero = bodies.rows, bodies.kind[i], physics.zero
-    force, torque = forces_on(bodies, physics, box, i, zero)
+    box = box_at_start(now, physics)
+    force, torque, virial = forces_on(bodies, physics, box, i, zero)
+    if now.flags & MEASURE_STRESS:
+        add_gaps(worker.thread, physics, bodies, scaled(time, virial))
     part = time / physics.timestep
     for k in range(len(zero)):
         root = bodies.kinds[kind, ROOT + k]
@@ -131,7 +135,7 @@ def turn_freely(bodies, i, time):
     q, spin = load(rows, i, TURN, FOUR), load(rows, i, SPIN, THREE)
     before = rotated_back(q, turn_by(bodies, i, q, INERTIA, spin))
     after, half = before, THREE
-    # The angle of a step is small, so each round gains some two digits.
+    # The angle of a step is small, so each round gains a digit or two.
     for _ in range(ROUNDS_OF_TURN):
         mean = scaled(0.5, added(before, after))
         half = scaled(0.5 * time, apply_symmetric(bodies.kinds, kind, INVERSE_INERTIA, mean))
@@ -155,13 +159,14 @@ def unit_turn(half):
 
 @scalar
 def joined_turns(q, p):
-    """First the turn p, then the turn q."""
-    return (
+    """First the turn p, then the turn q; a unit quaternion again."""
+    w = (
         q[0] * p[0] - q[1] * p[1] - q[2] * p[2] - q[3] * p[3],
         q[0] * p[1] + q[1] * p[0] + q[2] * p[3] - q[3] * p[2],
         q[0] * p[2] + q[2] * p[0] + q[3] * p[1] - q[1] * p[3],
         q[0] * p[3] + q[3] * p[0] + q[1] * p[2] - q[2] * p[1],
     )
+    return scaled(1.0 / math.sqrt(dot(w, w)), w)
 
 
 @scalar

@@ -78,6 +78,7 @@ class MovingBodies(NamedTuple):
     sums (threads, bodies, SUMS): of the hits in hand; taken (threads, bodies, 6): impulses, in
     whole numbers. gas (threads, most, GAS_COLUMNS): virtual particles, each of gas_mass;
     gas_number, gas_cell, gas_body (threads, most): number, cell and body of each.
+    tensor (threads, 2, 2 d^2): terms of the stress, before and after the collision.
     counters (threads, COUNTERS); faults (threads, 8): the first thing that goes wrong; work
     (threads, WORK), chosen (threads, LANES): scratch memory; waste: what walls take by flights that
     do not count.
@@ -115,6 +116,7 @@ class MovingBodies(NamedTuple):
     gas_number: Any
     gas_cell: Any
     gas_body: Any
+    tensor: Any
     counters: Any
     faults: Any
     work: Any

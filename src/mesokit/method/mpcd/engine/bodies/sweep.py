@@ -10,10 +10,12 @@ from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
 from mesokit.method.mpcd.engine.bodies.near import choose_near_bodies
 from mesokit.method.mpcd.engine.bodies.state import COUNT, IMAGE, PUT_BACK, SECOND_HITS
+from mesokit.method.mpcd.engine.bodies.stress import take_near_flux
 from mesokit.method.mpcd.engine.cpu import stages
-from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, STREAM
+from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
+from mesokit.method.mpcd.engine.cpu.sweep import add_strip_flux
 from mesokit.method.mpcd.engine.where import where
 
 KEEP, RESTORE = 0, 1
@@ -43,6 +45,7 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
     clear, marks = scratch.clear[worker.thread], scratch.marks[worker.thread]
     chosen, impulse = bodies.chosen[worker.thread], fluid.taken.impulse[worker.thread]
     sums, here = fluid.cells.sums[worker.thread], bodies.counters[worker.thread]
+    tensor, measured = fluid.taken.tensor, now.flags & MEASURE_STRESS
     if now.flags & STREAM:
         here[COUNT] = here[PUT_BACK] = here[SECOND_HITS] = 0
     first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
@@ -56,6 +59,8 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
         if now.flags & COLLIDE:
             stages.gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
             stages.collide_strip(physics, now.old, strip, gathered)
+            if measured and not now.flags & STREAM:
+                add_strip_flux(physics, now.box, now.old, strip, lanes, tensor[1, s])
         if now.flags & STREAM:
             near = choose_near_bodies(worker, now, physics, bodies, strip, s, lanes, chosen)
             look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
@@ -70,6 +75,9 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
             keep_images(now.box, bodies, worker.thread, near, chosen, image, KEEP)
             stages.slide_strip(now.box, now.grid, strip, image, zero)
             keep_images(now.box, bodies, worker.thread, near, chosen, image, RESTORE)
+            if measured:
+                add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
+                take_near_flux(physics, now, strip, chosen, near, tensor[0, s])
             stages.bin_strip(physics, now, strip, cell, ids, terms)
             for j in range(near):
                 cell[chosen[j]] = fluid.cells.number  # which takes what must not act

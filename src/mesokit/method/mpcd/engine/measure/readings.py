@@ -320,7 +320,8 @@ class Readings:
         """Stress of the step that ends now, positive where the fluid above drags the one below.
 
         Kinetic: momentum carried in the flight, which is the mean of the values before and after
-        the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009).
+        the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009), and
+        what bodies give and take, at their centres.
         Bond: momentum handed over within molecules of the fluid and between beads of solutes, the
         mean over the flight.
         """
@@ -331,6 +332,8 @@ class Readings:
             theirs = self.total(self.solutes.state_of.tensor.swapaxes(0, 1), unit)
             bonded = theirs[2:] + parts[2:] if len(parts) > 2 else theirs[2:]
             parts = np.concatenate([parts[:2] + theirs[:2], bonded])
+        if self.bodies is not None:
+            parts[:2] += self.total(self.bodies.state_of.tensor, unit)
         (flux, moment), (flux_after, moment_after), *rest = parts.reshape(-1, 2, d, d)
         volume = math.prod(self.numbers.case.box.size)
         self.stress = {
