@@ -141,10 +141,10 @@ class BodyFrames:
     def _room(self) -> tuple[float, float]:
         if self.third is None:
             return 0.0, 0.0
-        way = towards(self.columns)
-        back, front = sorted((0.0, way * float(self.case.box.size[self.third])))
+        sign = towards(self.columns)
+        back, front = sorted((0.0, sign * float(self.case.box.size[self.third])))
         if self.behind and self.plane is not None:
-            front = way * self.plane
+            front = sign * self.plane
         return back, front
 
     def _placed(self, places: Array, turns: Array, time: float) -> list[Placed]:
@@ -194,8 +194,8 @@ def _round(shape: BodyShape) -> bool:
 def rotations(turns: Array) -> Array:
     """Matrices (n, 3, 3) of unit quaternions (n, 4) w, x, y, z.
 
-    >>> rotations(np.array([[0.5**0.5, 0, 0, 0.5**0.5]])).round(9)[0, :, 0].tolist()
-    [0.0, 1.0, 0.0]
+    >>> float(rotations(np.array([[0.5**0.5, 0, 0, 0.5**0.5]]))[0, 1, 0].round(9))  # x to y
+    1.0
     """
     w, u = turns[:, 0, None, None], turns[:, 1:]
     cross = np.cross(np.eye(3)[None], u[:, None])  # its rows times a vector: u x vector

@@ -27,10 +27,6 @@ def _of_part(part: Part, places: Array) -> Array:
     away = places - p[:d]
     if part.kind == "ball":
         return np.linalg.norm(away, axis=1) - p[6]
-    if part.kind == "capsule":
-        span = p[3 : 3 + d]
-        along = np.clip(p[7] * away @ span, 0.0, 1.0)
-        return np.linalg.norm(away - along[:, None] * span, axis=1) - p[6]
     if part.kind == "brick":
         turned = away.copy()
         turned[:, 0] = p[6] * away[:, 0] + p[7] * away[:, 1]
@@ -38,12 +34,15 @@ def _of_part(part: Part, places: Array) -> Array:
         beyond = abs(turned) - p[3 : 3 + d]
         outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
         return np.where(outside > 0, outside, beyond.max(axis=1))
-    assert part.kind == "ellipsoid"
-    height = away @ p[3 : 3 + d]
-    radius = np.linalg.norm(away - height[:, None] * p[3 : 3 + d], axis=1)
-    if p[6] < p[7]:
-        return _from_ellipse(p[6], p[7], abs(height), radius)
-    return _from_ellipse(p[7], p[6], radius, abs(height))
+    if part.kind == "ellipsoid":
+        height = away @ p[3 : 3 + d]
+        radius = np.linalg.norm(away - height[:, None] * p[3 : 3 + d], axis=1)
+        if p[6] < p[7]:
+            return _from_ellipse(p[6], p[7], abs(height), radius)
+        return _from_ellipse(p[7], p[6], radius, abs(height))
+    span = p[3 : 3 + d]  # all within a radius of a line
+    along = np.clip(p[7] * away @ span, 0.0, 1.0)
+    return np.linalg.norm(away - along[:, None] * span, axis=1) - p[6]
 
 
 def _from_ellipse(short: float, long: float, y: Array, z: Array) -> Array:

@@ -40,6 +40,25 @@ class Surface(NamedTuple):
     reach: float
 
 
+class Look(NamedTuple):
+    """How light a surface is, the number of its colour, and where its dark end looks, or zeros."""
+
+    light: float
+    colour: int
+    ahead: Array
+
+
+class Samples(NamedTuple):
+    """Those of an image: its lower left corner, how many there are in a unit of length along each
+    axis, and of each (rows, columns) the depth of what it sees, its light, and its colour or -1."""
+
+    low: Array
+    scale: Array
+    nearest: Any
+    lit: Any
+    owner: Any
+
+
 def shaded_parts(
     placed: Sequence[Placed],
     colours: Array,
@@ -63,13 +82,13 @@ def shaded_parts(
     scale = np.array([width / (high[0] - low[0]), height / (high[1] - low[1])]) * FINER
     nearest = np.full((height * FINER, width * FINER), -np.inf, np.float32)
     lit, owner = np.zeros_like(nearest), np.full(nearest.shape, -1, np.int16)
+    samples = Samples(np.array(low, float), scale, nearest, lit, owner)
     back, span = room[0], max(room[1] - room[0], 1e-300)
     for part, place, turn, colour, capped in placed:
         light = 1.0 - DARK * (1.0 - min(max((place[2] - back) / span, 0.0), 1.0))
-        ahead = np.array(turn[:, 0]) * capped
+        look = Look(light, colour, np.array(turn[:, 0]) * capped)
         for surface in surfaces(part, place, turn):
-            look = surface, ahead, light, colour
-            front(*look, np.array(low, float), scale, nearest, lit, owner)
+            front(surface, look, samples)
     cells = (height, FINER, width, FINER)
     shares = owner.reshape(cells) >= 0
     covered = shares.sum(axis=(1, 3))
@@ -95,8 +114,7 @@ def surfaces(part: Part, place: Array, turn: Array) -> Iterator[Surface]:
     elif part.kind == "brick":
         own = turn @ np.array([[p[6], -p[7], 0.0], [p[7], p[6], 0.0], [0.0, 0.0, 1.0]])
         yield Surface(True, middle, own, p[3:6], unit[0], float(np.hypot.reduce(p[3:6])))
-    else:
-        assert part.kind == "capsule"
+    else:  # all within a radius of a line
         span = turn @ p[3:6]
         half = 0.5 * float(np.hypot.reduce(span))
         axis = span / (2.0 * half)
@@ -107,11 +125,12 @@ def surfaces(part: Part, place: Array, turn: Array) -> Iterator[Surface]:
 
 
 @kernel
-def front(surface, ahead, light, colour, low, scale, nearest, lit, owner):
+def front(surface, look, samples):
     """Where rays first meet a surface, each through a sample of the image, against the third axis.
 
     A sample that sees it nearer than what was there gets its depth, light and colour.
     """
+    low, scale, nearest = samples.low, samples.scale, samples.nearest
     rows, columns = nearest.shape
     x, y, reach = surface.middle[0] - low[0], surface.middle[1] - low[1], surface.reach
     first = max(0, int(np.ceil((y - reach) * scale[1] - 0.5)))
@@ -168,8 +187,8 @@ def front(surface, ahead, light, colour, low, scale, nearest, lit, owner):
             bright, cosine = 0.0, 0.0
             for k in range(3):
                 bright += normal[k] * LIGHT[k]
-                cosine += normal[k] * ahead[k]
-            bright = light * (SHADE + (1.0 - SHADE) * max(bright, 0.0))
+                cosine += normal[k] * look.ahead[k]
+            bright = look.light * (SHADE + (1.0 - SHADE) * max(bright, 0.0))
             nearest[row, column] = depth
-            lit[row, column] = bright * CAP_SHADE if cosine > CAP else bright
-            owner[row, column] = colour
+            samples.lit[row, column] = bright * CAP_SHADE if cosine > CAP else bright
+            samples.owner[row, column] = look.colour
