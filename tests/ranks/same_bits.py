@@ -15,14 +15,20 @@ from mesokit import (
     Box,
     Case,
     Disk,
+    DiskBody,
     Fluid,
     Harmonic,
     MaxwellBoltzmann,
     Molecule,
     Plates,
     Polymer,
+    RectangleBody,
     Run,
     Solutes,
+    SphereBody,
+    SpheroidBody,
+    Squirming,
+    SRDPlusA,
     Uniform,
 )
 from mesokit.method.mpcd.engine.cpu.engine import CPU
@@ -55,6 +61,27 @@ CASES = {
         run=RUN,
         box=Box([12, 10, 14]),
         fluid=Fluid(density=5, timestep=1.0, thermostat=HELD),
+    ),
+}
+CASES |= {
+    "bodies in a channel": Case(
+        run=RUN,
+        box=Box([40, 20]),
+        fluid=Fluid(density=5, force=Uniform([0.01, 0]), thermostat=HELD),
+        walls=[Plates("y"), Disk(centre=[10.3, 9.7], radius=3)],
+        bodies=[
+            DiskBody(radius=2, number=3, swim=Squirming(B1=0.1)),
+            RectangleBody(size=[5, 3], density=10),
+        ],
+    ),
+    "bodies in shear": Case(
+        run=RUN,
+        box=Box([16, 14, 15], shear_rate=0.05),
+        fluid=Fluid(density=5, timestep=0.3, collision=SRDPlusA(), thermostat=HELD),
+        bodies=[
+            SphereBody(radius=2, number=4),
+            SpheroidBody(half_length=3, radius=1.5, density=10, virtual="none"),
+        ],
     ),
 }
 MEASURES = ("stress", "walls")

@@ -7,6 +7,7 @@ import pytest
 from tests.helpers.rank_runs import on_ranks
 
 RUNS = {"channel": (3, 1), "sheared dimers": (4, 1), "long flights": (2, 2)}  # ranks, threads
+RUNS |= {"bodies in a channel": (3, 1), "bodies in shear": (4, 2)}
 OBSERVED = "past a post", "past a sphere", "two species", "molecules"
 
 

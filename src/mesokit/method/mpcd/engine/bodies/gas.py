@@ -179,7 +179,7 @@ class GasCell(NamedTuple):
     centre: tuple
     speed: float
     middle: tuple
-    cell: int
+    cell: np.int64
 
 
 @seldom

@@ -1,5 +1,6 @@
 """Readings of bodies for observables, their state for checkpoints, and what stops a run."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -52,7 +53,10 @@ KEPT = {  # what a checkpoint holds, with the columns that it takes
 class BodyReadings:
     """The bodies of a fluid in memory, by their numbers from 0, kind after kind."""
 
-    def __init__(self, memory: Any) -> None:
+    def __init__(
+        self, memory: Any, reduced: Callable[[Any], Any] = lambda numbers: numbers
+    ) -> None:
+        self.reduced = reduced  # sums over all ranks
         self.memory, self.case = memory, memory.numbers.case
         self.dimension, self.state_of = memory.numbers.dimension, memory.bodies
         self.names = [one.name for one in named(self.case.bodies)]
@@ -125,10 +129,6 @@ class BodyReadings:
         counters = self.state_of.counters[:, [SECOND_HITS, PUT_BACK]].sum(axis=0)
         second, put_back = self.reduced(counters).tolist()
         return {"second hits": second, "put back": put_back}
-
-    def reduced(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The sum over all ranks; here there is one."""
-        return numbers
 
     def forget_lists(self) -> None:
         """Lists are made anew at the next step."""

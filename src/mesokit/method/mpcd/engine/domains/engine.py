@@ -135,7 +135,7 @@ class Ranks(CPU):
             beads, before = new.solutes, memory.solutes
             beads.r[:], beads.v[:] = before.r, before.v
             beads.halo.numbers[:], beads.halo.count[:] = before.halo.numbers, before.halo.count
-        if memory.bodies:
+        if self.readings.bodies is not None:
             new.bodies.rows[:] = memory.bodies.rows
             new.bodies.faults[:] = memory.bodies.faults
             self.readings.bodies.forget_lists()

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesokit.loops.threads import Threads
 from mesokit.method.mpcd.engine.beads.readings import SoluteReadings, energy_in
 from mesokit.method.mpcd.engine.beads.state import OWN
+from mesokit.method.mpcd.engine.bodies.readings import BodyReadings
 from mesokit.method.mpcd.engine.cpu.memory import Floats, Memory
 from mesokit.method.mpcd.engine.measure.readings import Observed, Readings
 from mesokit.method.mpcd.engine.pieces import ROOT, Spread, pieces
@@ -38,7 +39,7 @@ class SharedReadings(Readings):
         if memory.solutes:
             self.solutes = SharedSolutes(memory, comm)
         if self.bodies is not None:
-            self.bodies.reduced = self.reduced
+            self.bodies = BodyReadings(memory, self.reduced)
         self._sorted: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
 
     def forget(self) -> None:
@@ -179,7 +180,7 @@ class Here:
     """Readings of the particles of this rank, by id, without messages to other ranks.
 
     Positions in the box, velocities and image counts (n, d) are those of some particles `ids`.
-    Beads of solutes, which all ranks can read, count as those of the first rank.
+    Beads of solutes and bodies, which all ranks can read, count as those of the first rank.
     """
 
     def __init__(self, readings: SharedReadings) -> None:
@@ -200,10 +201,18 @@ class Here:
         for first, last in pieces(0, own):
             places = readings.memory.places[which[first:last]]
             out[first:last] = getattr(readings.seen_at(places, False), name)
-        if readings.solutes is not None:
-            beads = Observed(*readings.solutes.folded())
-            out[own:] = getattr(beads, name)[ids[own:] - readings.n]
+        if own < len(ids):
+            others = readings.others(False)
+            out[own:] = getattr(others, name)[ids[own:] - readings.n]
         return out
+
+    def orientations(self, ids: NDArray[np.int64]) -> Floats:
+        """Unit quaternions of bodies, by particle id."""
+        return self.readings.orientations(ids)
+
+    def spins(self, ids: NDArray[np.int64]) -> Floats:
+        """Angular velocities of bodies, by particle id."""
+        return self.readings.spins(ids)
 
     positions = functools.partialmethod(_of, "positions")
     velocities = functools.partialmethod(_of, "velocities")

@@ -263,13 +263,13 @@ class Readings:
             return self._gather_fluid(ids, unwrapped)
         own = ids < self.n
         others = np.where(own, 0, ids - self.n)
-        seen = self._gather_others(unwrapped)
+        seen = self.others(unwrapped)
         r, v, image = seen.positions[others], seen.velocities[others], seen.images[others]
         if own.any():
             r[own], v[own], image[own] = self._gather_fluid(ids[own], unwrapped)
         return Observed(r, v, image)
 
-    def _gather_others(self, unwrapped: bool) -> Observed:
+    def others(self, unwrapped: bool) -> Observed:
         """All beads of solutes, then all bodies."""
         found = []
         if self.solutes is not None:
