@@ -8,7 +8,6 @@ from mesokit import (
     SRD,
     Box,
     Case,
-    CaseError,
     Disk,
     Fluid,
     NoCollision,
@@ -142,9 +141,7 @@ def test_bodies_that_do_not_turn_need_no_angular_momentum(rule):
     assert not [line for line in found if "angular momentum" in line]
 
 
-def test_they_run_on_one_rank_of_processors_alone():
+def test_they_run_on_ranks_of_processors_alone():
     case = case_of([20, 20], DiskBody(radius=3))
     assert list(refused(case)) == ["no bodies that move yet; expected --device cpu"]
-    with pytest.raises(CaseError) as error:
-        METHOD.check_ranks(case, 2)
-    assert str(error.value) == "bodies: not on 2 ranks yet; expected one rank"
+    METHOD.check_ranks(case, 2)

@@ -110,6 +110,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         mean_free_path=setting.mean_free_path(case),
         transport=transport,
         solvent=setting.solvent(case),
+        suspended="bodies" if case.solutes is None else "solutes",
         flow=flow,
         flow_speed=speed,
         flow_bound=bound,

@@ -19,7 +19,7 @@ class Derived(Shown):
     """Numbers that follow from a case. Lengths in cells; None where there is no formula.
 
     `transport` holds the coefficients of the whole fluid, `solvent` those of a fluid without the
-    solutes that are in it.
+    solutes or bodies that are in it, which `suspended` calls by their name.
     `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_bound` that
     of the empty channel where obstacles stand in the flow, whose speed is unknown beforehand,
     `flow_size` the size across it, `reynolds` both over the viscosity (in a round pipe the mean
@@ -37,6 +37,7 @@ class Derived(Shown):
     mean_free_path: float
     transport: theory.Transport | None
     solvent: theory.Transport | None
+    suspended: str
     flow: str
     flow_speed: float | None
     flow_bound: float | None
@@ -60,7 +61,7 @@ class Derived(Shown):
         path = ("mean free path", number(self.mean_free_path, "a"), "")
         if known is None:
             return [path]
-        of = "without the solutes" if self.transport is None else ""
+        of = f"without the {self.suspended}" if self.transport is None else ""
         parts = f"kinetic {known.viscosity_kinetic:.4g}, collisional"
         parts = "; ".join(filter(None, [of, f"{parts} {known.viscosity_collisional:.4g}"]))
         return [

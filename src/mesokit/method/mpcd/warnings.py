@@ -103,6 +103,7 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
             f"fluid.thermostat.rule = {name_of(fluid.thermostat)!r}, fluid.collision.rule = "
             f"{name_of(fluid.collision)!r}: {note.removeprefix('approximate: ')} at this density"
         )
+    transport = transport or (numbers.solvent if case.bodies else None)
     if transport is None:
         reason = setting.caveat(case) or "no formula for this fluid"
         if lacking := _without_theory(case):
