@@ -20,13 +20,13 @@ from mesokit.method.mpcd.engine.bodies.hits import (
     add_moments,
     moments_at,
     no_moments,
-    normal_at,
     physics_scales,
     take_impulses,
     wall_velocity,
 )
 from mesokit.method.mpcd.engine.bodies.linear import solve_noise, unlevered
 from mesokit.method.mpcd.engine.bodies.near import slides
+from mesokit.method.mpcd.engine.bodies.search import normal_at
 from mesokit.method.mpcd.engine.bodies.state import (
     B1,
     B2,

@@ -7,35 +7,19 @@ are whole numbers, so their bits depend on no order. Particles that hit again do
 with the velocity that the body has then.
 """
 
-import math
-from typing import NamedTuple
-
 import numpy as np
 
 from mesokit.case.box import fold
-from mesokit.geometry.protocol import (
-    Chance,
-    facing,
-    first_hit,
-    happens,
-    homed,
-    lever,
-    rebound,
-    surface_of,
-    unmet,
-)
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import LANES, share, strip_at
+from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
-from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.linear import solve_reflection, unlevered
 from mesokit.method.mpcd.engine.bodies.motion import end_turn
 from mesokit.method.mpcd.engine.bodies.near import (
-    bodies_near,
-    body_near,
     box_at_start,
 )
-from mesokit.method.mpcd.engine.bodies.put_back import note_all_migrants, put_all_back
+from mesokit.method.mpcd.engine.bodies.outside import put_outside
+from mesokit.method.mpcd.engine.bodies.search import BLOCK, Flight, RandomHits, normal_at, to_body
 from mesokit.method.mpcd.engine.bodies.state import (
     ANGLE,
     ARM,
@@ -50,7 +34,6 @@ from mesokit.method.mpcd.engine.bodies.state import (
     FOUR,
     GOING,
     HITS,
-    IS_BALL,
     IS_SLIP,
     LANE,
     LEFT,
@@ -60,7 +43,6 @@ from mesokit.method.mpcd.engine.bodies.state import (
     NORMAL,
     PLACE,
     PUT_BACK,
-    RADIUS,
     ROOT,
     SECOND_HITS,
     SHEAR,
@@ -75,29 +57,23 @@ from mesokit.method.mpcd.engine.bodies.state import (
     VELOCITY,
     R,
     V,
-    after_turn,
     image_near,
     load,
     of_kind,
     place_at,
     rigid_velocity,
-    rotated,
-    rotated_back,
     spin_of,
     store,
-    with_shear,
 )
 from mesokit.method.mpcd.engine.bodies.stress import AFTER, add_impulse, add_near_flux
+from mesokit.method.mpcd.engine.bodies.sweep import note_all_migrants, put_all_back
 from mesokit.method.mpcd.engine.bodies.swim import squirming
-from mesokit.method.mpcd.engine.cpu.bounce import fly_among, take_sum
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, STREAM
-from mesokit.method.mpcd.engine.cpu.physics import field_of, has_solid, momentum_scale
-from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass
+from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
+from mesokit.method.mpcd.engine.cpu.strips.one import mass_in_lane
 from mesokit.method.mpcd.engine.domains.messages.bodies import add_others, hits_elsewhere
 from mesokit.method.mpcd.engine.embedded.near import note
-from mesokit.method.mpcd.engine.where import where
-from mesokit.method.mpcd.field.none import Zero
-from mesokit.method.mpcd.streaming import fall, halfway, vector
+from mesokit.method.mpcd.streaming import halfway, vector
 from mesokit.scalar.fixed_point import (
     add_integers,
     added_quanta,
@@ -106,18 +82,10 @@ from mesokit.scalar.fixed_point import (
     opposite,
     quanta,
 )
-from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added, added_scaled, dot, outer, scaled
 
 ROUNDS = 8  # of hits of a particle in a timestep; then it flies on freely
-ON_SURFACE = 1e-11  # cells: a flight that comes so close has arrived
-SHORT_STEP = 1e-3  # cells: the least step of a search
-MOST_TRIES = 100
-PROJECTIONS = 8
-BLOCK = 64  # numbers of hits that particles of walls take in a round
-OUTSIDE = 1e-12  # cells: how far from a surface particles are put
-FREE_STEP, FREE_TRIES = 0.05, 400
 
 
 @stage
@@ -213,7 +181,7 @@ def find_hit(worker, now, physics, fluid, bodies, j, n, trial):
     box, cell, left = box_at_start(now, physics), numbers[thread, j, CELL], numbers[thread, j, LEFT]
     lane = numbers[thread, j, LANE]
     impulse = bodies.waste[thread] if trial else fluid.taken.impulse[thread]
-    m, number = mass_of_lane(physics, fluid.particles, lane), fluid.particles.ident[lane]
+    m, number = mass_in_lane(physics, fluid.particles, lane), fluid.particles.ident[lane]
     flight = Flight(box, cell, left, where_from, begin, a)
     draws = RandomHits(now.counter, number, m, n * BLOCK)
     time, i, r, v = to_body(physics, bodies, flight, draws, r, v, impulse)
@@ -304,230 +272,6 @@ def add_moments(sums, found, pattern, scales):
     return add
 
 
-@scalar
-def mass_of_lane(physics, particles, lane):
-    """Mass of the particle in a lane, counted through the strips."""
-    strip = particles.data[strip_at(lane // LANES, particles.rows)]
-    return lane_mass(physics.masses, strip, lane % LANES, 2 * len(physics.zero))
-
-
-class Flight(NamedTuple):
-    """A flight in search of bodies: the box at the beginning of the step, the cell whose list is
-    tried, the body that it has left, where the step began, the time since then, and the
-    acceleration."""
-
-    box: tuple
-    cell: int
-    left: int
-    start: tuple
-    begin: float
-    a: tuple
-
-
-class RandomHits(NamedTuple):
-    """What random reflections by walls depend on: the step, the particle, its mass, and the first
-    number of a hit."""
-
-    counter: tuple
-    number: int
-    mass: float
-    first: int
-
-
-@by_type
-def to_body(physics, bodies, flight, draws, r, v, impulse):
-    """Time in the step, body, place and velocity of the next hit; NO_BODY at the end of the step.
-
-    Walls reflect the particle on its way.
-    """
-    return _to_body_among_walls if has_solid(physics) else _to_body
-
-
-def _to_body(physics, bodies, flight, draws, r, v, impulse):
-    a, left = flight.a, physics.timestep - flight.begin
-    time, i = first_body(bodies, flight, r, v, a, flight.begin, left)
-    if i == NO_BODY:
-        r, v = fall(r, v, of_field(physics, a), left)
-        return physics.timestep, np.int64(NO_BODY), r, v
-    r, v = fall(r, v, of_field(physics, a), time)
-    return flight.begin + time, np.int64(i), r, v
-
-
-@by_type
-def of_field(physics, a):
-    """The acceleration as the flight takes it: () without a field, for the same bits."""
-    if field_of(physics, "field").instance_class is Zero:
-        return lambda physics, a: ()
-    return lambda physics, a: a
-
-
-def _to_body_among_walls(physics, bodies, flight, draws, r, v, impulse):
-    solid, begin, end = physics.solid, flight.begin, physics.timestep
-    a, counter, number, m = flight.a, draws.counter, draws.number, draws.mass
-    time, i = first_body(bodies, flight, r, v, a, begin, end - begin)
-    if begin == 0.0 and i == NO_BODY:  # as a particle far from all bodies
-        r, v = fly_among(physics, counter, (number, m), r, v, impulse)
-        return end, np.int64(NO_BODY), r, v
-    start = homed(solid, r)
-    away, x, contact = added_scaled(r, -1.0, start), start, unmet(solid)
-    # Wall after wall, until a body comes first or nothing is met any more.
-    for k in range(BLOCK):
-        until = time if i != NO_BODY else end - begin
-        hit, contact = first_hit(solid, x, v, a, until, contact)
-        if hit > until:
-            break
-        x, v = fall(x, v, a, hit)
-        begin += hit
-        if happens(solid, contact):
-            chance = Chance(counter.seed, counter.step, number, draws.first + k, physics.kT / m)
-            x, after = rebound(solid, contact, x, v, chance)
-            lost = scaled(m, added_scaled(v, -1.0, after))
-            given = lost + outer(lever(solid, contact, x), lost)
-            take_sum(impulse, surface_of(solid, contact), given, momentum_scale(physics))
-            v = after
-            time, i = first_body(bodies, flight, added(x, away), v, a, begin, end - begin)
-        elif i != NO_BODY:
-            time -= hit
-        at_home = homed(solid, x)
-        away, x = added(away, added_scaled(x, -1.0, at_home)), at_home
-    x, v = fall(x, v, a, time if i != NO_BODY else end - begin)
-    return (begin + time if i != NO_BODY else end), np.int64(i), added(x, away), v
-
-
-@seldom
-def first_body(bodies, flight, r, v, a, begin, time):
-    """The time until a flight from r meets a body, and which; NO_BODY if it meets none."""
-    soonest, which = time, np.int64(NO_BODY)
-    for n in range(bodies_near(bodies, flight.cell)):
-        i = body_near(bodies, flight.cell, n)
-        if i != flight.left:
-            x, speed = image_near(flight.box, load(bodies.rows, i, PLACE, r), flight.start)
-            y = added_scaled(r, -1.0, place_at(bodies, i, x, speed, begin))
-            u = with_shear(load(bodies.rows, i, MEAN_VELOCITY, r), speed)
-            w = added_scaled(v, -1.0, u)
-            if of_kind(bodies, i, IS_BALL) > 0.5:
-                t = time_to_ball(of_kind(bodies, i, RADIUS), y, w, a, soonest)
-            else:
-                t = time_to_shape(bodies, i, y, w, a, begin, soonest)
-            if t < soonest:
-                soonest, which = t, i
-    return soonest, which
-
-
-@seldom
-def time_to_ball(radius, y, w, a, time):
-    """When a flight from y with velocity w relative to its centre meets a ball; more than `time` if
-    it does not."""
-    late, t = 2.0 * time + 1.0, 0.0
-    if dot(a, a) == 0.0:
-        approach, c = dot(y, w), dot(y, y) - radius * radius
-        square = approach * approach - dot(w, w) * c
-        if approach >= 0.0 or square < 0.0:
-            return late
-        return max(c / (math.sqrt(square) - approach), 0.0)
-    # Bent flights by tangent planes, as for fixed solids: no step enters the ball.
-    for _ in range(MOST_TRIES):
-        size = math.sqrt(dot(y, y))
-        normal, c = scaled(1.0 / size, y), size - radius
-        down = dot(normal, w)
-        if c <= ON_SURFACE and down < 0.0:
-            return t
-        t += time_of_fall(max(c, 0.0), down, dot(normal, a), time - t)
-        if t > time:
-            return late
-        step = time_of_fall(max(c, 0.0), down, dot(normal, a), time)
-        y = added_scaled(added_scaled(y, step, w), 0.5 * step * step, a)
-        w = added_scaled(w, step, a)
-    return t
-
-
-@scalar
-def time_of_fall(height, v, a, time):
-    """When a particle at a height above a plane reaches it; more than `time` if it does not."""
-    square = v * v - 2.0 * a * height
-    down, late = math.sqrt(max(square, 0.0)), 2.0 * time + 1.0
-    if square < 0.0 or down == 0.0:
-        return late
-    if v < 0.0:
-        return 2.0 * height / (down - v)
-    return -(v + down) / a if a < 0.0 else late
-
-
-@scalar
-def clearance_of_flight(bodies, i, y, w, a, begin, t):
-    """Distance from body i of a place on a flight, as the body has rotated by then."""
-    x = added_scaled(added_scaled(y, t, w), 0.5 * t * t, a)
-    spin = load(bodies.rows, i, MEAN_SPIN, THREE)
-    q = after_turn(load(bodies.rows, i, TURN, FOUR), spin, begin + t)
-    c, _ = state.clearance(bodies, bodies.kind[i], rotated_back(q, x))
-    return c
-
-
-@seldom
-def time_to_shape(bodies, i, y, w, a, begin, time):
-    """The same for any shape, which turns while it moves."""
-    late, t = 2.0 * time + 1.0, 0.0
-    spin, pull = load(bodies.rows, i, MEAN_SPIN, THREE), math.sqrt(dot(a, a))
-    fast = math.sqrt(dot(w, w)) + pull * time
-    path = fast * time
-    c = clearance_of_flight(bodies, i, y, w, a, begin, 0.0)
-    fast += math.sqrt(dot(spin, spin)) * (of_kind(bodies, i, RADIUS) + max(c, 0.0) + path)
-    if c > fast * time:
-        return late
-    # No surface comes nearer faster than `fast`, so steps of the distance over it are safe. Near
-    # the surface they are short; the first place inside brackets the hit.
-    while t < time:
-        step = min(t + max(c, SHORT_STEP) / (fast + 1e-300), time)
-        above, c = c, clearance_of_flight(bodies, i, y, w, a, begin, step)
-        if c < 0.0:
-            if above <= ON_SURFACE and t == 0.0:  # it starts on the surface
-                return 0.0 if descends(bodies, i, y, w, spin, begin) else late
-            return time_of_crossing(bodies, i, (y, w, a), begin, (t, step), (max(above, 0.0), c))
-        t = step
-    return late
-
-
-@scalar
-def descends(bodies, i, y, w, spin, begin):
-    """Whether a flight that starts on the surface of a body goes into it."""
-    normal = normal_at(bodies, i, y, begin)
-    return dot(normal, added_scaled(w, -1.0, state.swept(spin, y))) < 0.0
-
-
-@seldom
-def time_of_crossing(bodies, i, flight, begin, times, distances):
-    """The last time found outside, when a flight crosses a surface between two times, at which its
-    distances from it are positive and negative."""
-    (y, w, a), (outside, inside), (above, below) = flight, times, distances
-    # False position with half weights for the end that stays (Illinois), a bisection now and then.
-    for n in range(MOST_TRIES):
-        part = above / (above - below) if n % 8 < 7 else 0.5
-        middle = outside + part * (inside - outside)
-        if not outside < middle < inside:
-            middle = 0.5 * (outside + inside)
-            if not outside < middle < inside:
-                break
-        c = clearance_of_flight(bodies, i, y, w, a, begin, middle)
-        if c < 0.0:
-            inside, below, above = middle, c, 0.5 * above
-        else:
-            outside, above, below = middle, c, 0.5 * below
-            if c < ON_SURFACE:
-                break
-    return outside
-
-
-@seldom
-def normal_at(bodies, i, s, time):
-    """Unit normal out of body i at an arm, a time after the beginning of the step."""
-    if of_kind(bodies, i, IS_BALL) > 0.5:
-        return scaled(1.0 / math.sqrt(dot(s, s)), s)
-    q = after_turn(load(bodies.rows, i, TURN, FOUR), load(bodies.rows, i, MEAN_SPIN, THREE), time)
-    y = rotated_back(q, s)
-    _, part = state.clearance(bodies, bodies.kind[i], y)
-    return rotated(q, state.normal_of(bodies, part, y))
-
-
 # --- the reflection -------------------------------------------------------------------------------
 
 
@@ -567,7 +311,7 @@ def reflect(worker, now, physics, fluid, bodies, j):
     g = added_scaled(v, -1.0, u)
     if of_kind(bodies, i, IS_SLIP) > 0.5:
         g = scaled(dot(normal, g), normal)
-    m, scale = mass_of_lane(physics, fluid.particles, lane), momentum_scale(physics)
+    m, scale = mass_in_lane(physics, fluid.particles, lane), momentum_scale(physics)
     units = added_quanta(scaled(-2.0 * m, g), scale, integers(s))
     v = added_scaled(v, 1.0 / (scale * m), floats(units))
     store(values, j, V, v)
@@ -650,61 +394,3 @@ def finish_flights(worker, now, physics, fluid, bodies):
         if not free:
             note(bodies.faults[thread], now.counter.step, CAUGHT, fluid.particles.ident[lane] + 1)
         store(values, j, R, r)
-
-
-@seldom
-def put_outside(physics, box, bodies, cell, r):
-    """The nearest place outside all bodies and walls, whether that is another one, and whether
-    there is one."""
-    start, moved = r, False
-    # In turn out of the body and of the wall in which it is deepest. Where they touch that may go
-    # on for ever, so places around are tried then, nearer ones first.
-    for _ in range(PROJECTIONS):
-        depth, out = deepest(box, bodies, cell, r)
-        wall, away = in_wall(physics, r)
-        if depth >= 0.0 and wall >= 0.0:
-            return r, moved, True
-        moved = True
-        if depth < 0.0:
-            r = added_scaled(r, OUTSIDE - depth, out)
-        else:
-            r = added_scaled(r, OUTSIDE - wall, away)
-    for n in range(FREE_TRIES):
-        r, rest = start, n % 27
-        for k in range(len(r)):
-            r = with_item(r, k, r[k] + FREE_STEP * (1 + n // 27) * (rest % 3 - 1.0))
-            rest //= 3
-        depth, _ = deepest(box, bodies, cell, r)
-        wall, _ = in_wall(physics, r)
-        if depth >= 0.0 and wall >= 0.0:
-            return r, True, True
-    return start, True, False
-
-
-@seldom
-def deepest(box, bodies, cell, r):
-    """The least distance of r from the bodies on the list of a cell, 0 if it is in none, and the
-    normal of that body."""
-    least, out = 0.0, r
-    for n in range(bodies_near(bodies, cell)):
-        i = body_near(bodies, cell, n)
-        x, _ = image_near(box, load(bodies.rows, i, PLACE, r), r)
-        s = added_scaled(r, -1.0, x)
-        radius = of_kind(bodies, i, RADIUS)
-        if dot(s, s) < radius * radius:
-            if of_kind(bodies, i, IS_BALL) > 0.5:
-                c = math.sqrt(dot(s, s)) - radius
-            else:
-                y = rotated_back(load(bodies.rows, i, TURN, FOUR), s)
-                c, _ = state.clearance(bodies, bodies.kind[i], y)
-            if c < least:
-                least, out = c, normal_at(bodies, i, s, 0.0)
-    return least, out
-
-
-@where("(0.0, r)", physics=has_solid)
-def in_wall(physics, r):
-    """The distance of r from walls where it is in one, else 0, and the normal out of them."""
-    x = homed(physics.solid, r)
-    distance, normal, _, _ = facing(physics.solid, 0.0, x)
-    return min(distance, 0.0), normal

@@ -14,8 +14,8 @@ from mesokit.method.mpcd.body.protocol import named
 from mesokit.method.mpcd.engine.beads.interactions import first_fault
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.allocate import masses_of
-from mesokit.method.mpcd.engine.bodies.hits import deepest
 from mesokit.method.mpcd.engine.bodies.near import cell_of, list_by_cells
+from mesokit.method.mpcd.engine.bodies.outside import deepest
 from mesokit.method.mpcd.engine.bodies.state import (
     ANGLE,
     BOXES,

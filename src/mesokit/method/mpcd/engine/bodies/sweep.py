@@ -9,15 +9,29 @@ from mesokit.case.box import SLIDING
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
 from mesokit.method.mpcd.engine.bodies.near import choose_near_bodies
-from mesokit.method.mpcd.engine.bodies.state import COUNT, IMAGE, PUT_BACK, SECOND_HITS
+from mesokit.method.mpcd.engine.bodies.state import (
+    COUNT,
+    IMAGE,
+    LANE,
+    PUT_BACK,
+    SECOND_HITS,
+    START,
+    R,
+    V,
+    load,
+)
 from mesokit.method.mpcd.engine.bodies.stress import take_near_flux
 from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
+from mesokit.method.mpcd.engine.cpu.strips.one import put_one
 from mesokit.method.mpcd.engine.cpu.sweep import add_strip_flux
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
+from mesokit.method.mpcd.engine.domains.messages.migrate import note_migrants
+from mesokit.method.mpcd.engine.domains.messages.shared import shares
 from mesokit.method.mpcd.engine.where import where
+from mesokit.scalar.jit import scalar
 
 KEEP, RESTORE = 0, 1
 WAITING = -1  # the cell of a particle that has not flown yet
@@ -53,7 +67,7 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
     first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
     # As `cpu.sweep`, but particles near a body are copied to a list with r and v at t, after the
     # collision. Their lanes fly with the others, for whole vectors, and do not count: their terms
-    # go to the spare cell. `put_back` restores them at t + dt.
+    # go to the spare cell. `put_all_back` restores them at t + dt.
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
@@ -88,3 +102,23 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
             for j in range(near):
                 cell[chosen[j]] = WAITING
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
+
+
+@scalar
+def put_all_back(worker, now, physics, fluid, bodies):
+    """All particles of this thread's list, at t + dt."""
+    thread, values, zero = worker.thread, bodies.values[worker.thread], physics.zero
+    for j in range(bodies.counters[thread, COUNT]):
+        r, v = load(values, j, R, zero), load(values, j, V, zero)
+        start = load(values, j, START, zero)
+        put_one(worker, now, physics, fluid, bodies.numbers[thread, j, LANE], start, r, v)
+
+
+@where(fluid=shares)
+def note_all_migrants(worker, now, physics, fluid):
+    """Note the particles that must change ranks in this step, when all have flown."""
+    particles = fluid.particles
+    first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+    for s in range(first, last):
+        strip = particles.data[strip_at(s, particles.rows)]
+        note_migrants(worker, now, physics, fluid, strip, s)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import LANES, share, strip_at
+from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads import state
 from mesokit.method.mpcd.engine.beads.moving import MovingBeads, accelerated
@@ -18,7 +18,8 @@ from mesokit.method.mpcd.engine.beads.neighbours import apart
 from mesokit.method.mpcd.engine.beads.verlet import SUBSTEP_BITS, drift, flown, kick, verlet
 from mesokit.method.mpcd.engine.cpu.groups import STREAM
 from mesokit.method.mpcd.engine.cpu.physics import has_solid, momentum_scale
-from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_values, store_values
+from mesokit.method.mpcd.engine.cpu.strips.one import mass_in_lane
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.method.mpcd.engine.embedded.near import has_left, note
 from mesokit.method.mpcd.engine.embedded.state import (
     ALL_BEADS,
@@ -89,13 +90,6 @@ def moved(physics, time, counter, moving, lane, r, v):
     """Place and velocity of the particle in a lane after a sub-step without forces."""
     m, number = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
     return flown(physics, time, counter, number, m, r, v, moving.solutes.impulse)
-
-
-@scalar
-def mass_in_lane(physics, particles, lane):
-    """Mass of the particle in a lane, counted through the strips."""
-    strip = particles.data[strip_at(lane // LANES, particles.rows)]
-    return lane_mass(physics.masses, strip, lane % LANES, 2 * len(physics.zero))
 
 
 @kick.register(Together)

@@ -19,7 +19,7 @@ from mesokit.method.mpcd.engine.cpu.strips.rows import (
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghost
 from mesokit.method.mpcd.engine.where import where
-from mesokit.scalar.jit import optional, seldom
+from mesokit.scalar.jit import optional, scalar, seldom
 from mesokit.scalar.vector import added_scaled
 
 
@@ -49,3 +49,10 @@ def forget_leap(physics, room, lane, displacement):
     """Forget the clear distance where a particle went farther than a stride."""
     if leaps(physics.solid, displacement):
         forget(room, lane // LANES, 1 << (lane % LANES // FEW))
+
+
+@scalar
+def mass_in_lane(physics, particles, lane):
+    """Mass of the particle in a lane, counted through the strips."""
+    strip = particles.data[strip_at(lane // LANES, particles.rows)]
+    return lane_mass(physics.masses, strip, lane % LANES, 2 * len(physics.zero))
