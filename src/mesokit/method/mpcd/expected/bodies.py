@@ -176,7 +176,7 @@ class Followed(NamedTuple):
         known = SLIP_LENGTHS[self.case.box.dimension, self.kind.virtual]
         path = np.log(setting.mean_free_path(self.case))
         slip = float(np.exp(np.interp(path, np.log(PATHS), np.log(known))))
-        return slip, f"with a slip length of {slip:.2g} a, as of plates"
+        return slip, f"with a slip length of {slip:.2g} a, as of plates in SRD"
 
 
 # Mean free paths, and slip lengths of plates that were measured there. In 2D those of 0.1 alone,
