@@ -51,7 +51,7 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "syntax": ({"steps = 10": "steps = = 10"}, ("line 4", "TOML")),
     "key twice": ({"steps = 10": "steps = 10\nsteps = 11"}, ("line 5", "TOML")),
     "end of file": ({'axis = "y"\n': 'axis = "y'}, ("TOML",)),
-    "unknown table": ({"[box]": "[bocks]"}, ("bocks: unknown key", "'box'")),
+    "unknown table": ({"[box]": "[boxes]"}, ("boxes: unknown key", "'box'")),
     "unknown top key": ({'title = "slit"': 'titel = "slit"'}, ("titel: unknown key", "'title'")),
     "plural": ({"[[wall]]": "[[walls]]"}, ("walls: unknown key", "[[wall]]")),
     "single brackets": ({"[[wall]]": "[wall]"}, ("wall:", "[[wall]]")),

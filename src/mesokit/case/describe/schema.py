@@ -28,7 +28,7 @@ def schema() -> dict[str, Any]:
         >>> found["definitions"]["SRD"]["properties"]["angle"]["description"]
         'rotation angle [degrees]'
         >>> sorted(found["properties"])[:4]
-        ['box', 'brownian', 'flock', 'fluid']
+        ['bodies', 'box', 'brownian', 'flock']
     """
     cases = {}
     for name in methods.modules():
