@@ -44,7 +44,9 @@ def case_for(observable, make_case, size, **fluid):
 
 def moving_body(size):
     """Two small disks or spheres that move in a box of this size."""
-    return (DiskBody if len(size) == 2 else SphereBody)(radius=0.5, mass=20, number=2, virtual="none")
+    return (DiskBody if len(size) == 2 else SphereBody)(
+        radius=0.5, mass=20, number=2, virtual="none"
+    )
 
 
 class FakeBodies:
