@@ -19,6 +19,7 @@ from mesokit.geometry.protocol import (
     surface_of,
     unmet,
 )
+from mesokit.geometry.solids.flight import MOST_TRIES, ON_SURFACE, SHORT_STEP, time_to_fall
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.near import (
     bodies_near,
@@ -50,9 +51,6 @@ from mesokit.method.mpcd.streaming import fall
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added, added_scaled, dot, outer, scaled
 
-ON_SURFACE = 1e-11  # cells: a flight that comes so close has arrived
-SHORT_STEP = 1e-3  # cells: the least step of a search
-MOST_TRIES = 100
 BLOCK = 64  # numbers of hits that particles of walls take in a round
 
 
@@ -177,25 +175,13 @@ def time_to_ball(radius, y, w, a, time):
         down = dot(normal, w)
         if c <= ON_SURFACE and down < 0.0:
             return t
-        t += time_of_fall(max(c, 0.0), down, dot(normal, a), time - t)
+        t += time_to_fall(max(c, 0.0), down, dot(normal, a), time - t)
         if t > time:
             return late
-        step = time_of_fall(max(c, 0.0), down, dot(normal, a), time)
+        step = time_to_fall(max(c, 0.0), down, dot(normal, a), time)
         y = added_scaled(added_scaled(y, step, w), 0.5 * step * step, a)
         w = added_scaled(w, step, a)
     return t
-
-
-@scalar
-def time_of_fall(height, v, a, time):
-    """When a particle at a height above a plane reaches it; more than `time` if it does not."""
-    square = v * v - 2.0 * a * height
-    down, late = math.sqrt(max(square, 0.0)), 2.0 * time + 1.0
-    if square < 0.0 or down == 0.0:
-        return late
-    if v < 0.0:
-        return 2.0 * height / (down - v)
-    return -(v + down) / a if a < 0.0 else late
 
 
 @scalar
