@@ -14,7 +14,7 @@ READY := .venv/ready
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
 	@echo "make test      run the tests but the long ones: some minutes"
-	@echo "make test-long run the long ones; make test-all runs all"
+	@echo "make test-long run the long ones; make test-all runs all, with further kinds on devices"
 	@echo "make durations print the slowest tests of the last time, and what each folder takes"
 	@echo "make quick     run the tests that simulate nothing: cases, theory, statistics, documents"
 	@echo "make lint      lint and types"
@@ -55,7 +55,7 @@ DURATIONS := -p tests.durations --durations-file build/durations
 test: $(READY)
 	@$(TEST) $(DURATIONS)/test.csv -m "not long"
 test-long: $(READY)
-	@$(TEST) $(DURATIONS)/test-long.csv -m long
+	@$(TEST) $(DURATIONS)/test-long.csv -m "long and not further"
 test-all: $(READY)
 	@$(TEST) $(DURATIONS)/test-all.csv
 durations:  # no $(READY): CI prints them also when something failed

@@ -11,6 +11,8 @@ from mesokit.devices.host import Host
 
 collect_ignore_glob = [] if find_spec("numba_cuda") else ["test_*.py"]
 CHIPS = ((9, 0), (8, 0), (12, 0))
+LONG = (pytest.mark.long,)
+FURTHER = (pytest.mark.long, pytest.mark.further)
 DEVICES = {
     "host": functools.partial(Host, 7),
     "host in order": Host,

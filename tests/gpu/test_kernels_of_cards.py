@@ -8,15 +8,17 @@ import pytest
 
 from benchmarks.gpu_kernels import CASES, CHIPS, kernels_of, needs
 from mesokit.devices.cubins import made
+from tests.gpu.conftest import FURTHER, LONG
 
 QUICK = ("3D SRD, thermostat",)
+WIDE = ("3D slit, thermostat", "3D SRD+a, thermostat")
 # Registers of a thread: with 64 a multiprocessor has 1024 threads, with 104 half of these.
 MOST = {"sweep": 64, "sweep_in_fluid": 64, "sweep_molecule": 88, "collide_cell": 64}
 MOST_WITH_ANGULAR_MOMENTUM = {"sweep": 104, "collide_cell": 100}
 # What all threads do in these is what they do in others.
 AS_OTHERS = ("3D slit, SRD+a, thermostat", "3D chains, thermostat")
 ROWS = [
-    pytest.param(name, marks=[] if name in QUICK else [pytest.mark.long])
+    pytest.param(name, marks=() if name in QUICK else LONG if name in WIDE else FURTHER)
     for name in CASES
     if name not in AS_OTHERS
 ]

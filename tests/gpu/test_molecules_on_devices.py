@@ -13,7 +13,7 @@ from mesokit import (
     Molecule,
     RunError,
 )
-from tests.gpu.conftest import CHIPS
+from tests.gpu.conftest import CHIPS, FURTHER, LONG
 from tests.helpers.kinds_of_fluid import MOLECULES
 from tests.helpers.on_devices import bulk, pair
 from tests.helpers.small_fluids import assert_same
@@ -32,7 +32,8 @@ BENT = bulk(3) | {
     "molecule": Molecule(length=4, bond=Harmonic(K=1.0), bending=Bending(kappa=2.0)),
 }  # fmt: skip
 QUICK = {"sheared chains": SHEARED}
-LONG = {
+WIDE = ("sheared chains", "dimers in a slit", "stiff rings")
+OTHERS = {
     **{name: MOLECULES[name] for name in ("dimers in a slit", "stars about a disk")},
     "chains whose shear oscillates": MOLECULES["chains whose shear oscillates"],
     "exact dimers": bulk(3) | {"molecule": Molecule(bond=Harmonic(K=1.0), propagation="exact")},
@@ -44,9 +45,10 @@ LONG = {
 def rows():
     """Every kind on a chip; that which is quick on the host alone."""
     yield from (pytest.param("host", kind, id=f"{name}, host") for name, kind in QUICK.items())
-    for place, (name, kind) in enumerate((QUICK | LONG).items()):
+    for place, (name, kind) in enumerate((QUICK | OTHERS).items()):
         device = f"checked {CHIPS[place % len(CHIPS)]}"
-        yield pytest.param(device, kind, marks=pytest.mark.long, id=f"{name}, {device}")
+        marks = LONG if name in WIDE else FURTHER
+        yield pytest.param(device, kind, marks=marks, id=f"{name}, {device}")
 
 
 def of_bonds(fluid) -> list:

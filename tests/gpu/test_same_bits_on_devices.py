@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import pytest
 
-from tests.gpu.conftest import CHIPS, DEVICES
+from tests.gpu.conftest import CHIPS, DEVICES, FURTHER, LONG
 from tests.helpers.on_devices import STEPS, kinds_of_bulk, pair
 
 MEASURED = ("stress",)
 SIMPLE = "2D SRD"
 QUICK = ("2D AT", SIMPLE)
+WIDE = (SIMPLE, "3D mixture that demixes", "3D ATPlusA")  # most of the parts are in these
 KINDS = kinds_of_bulk()
 
 
@@ -26,7 +27,8 @@ def rows():
     for place, kind in enumerate(KINDS):
         chip = f"checked {(9, 0) if kind in QUICK else CHIPS[place % len(CHIPS)]}"
         for device in DEVICES if kind == SIMPLE else (chip,):
-            marks = [] if kind in QUICK and device == chip else [pytest.mark.long]
+            quick = kind in QUICK and device == chip
+            marks = () if quick else LONG if kind in WIDE else FURTHER
             yield pytest.param(device, kind, marks=marks, id=f"{kind}, {device}")
 
 

@@ -23,7 +23,7 @@ from mesokit import (
     Uniform,
 )
 from mesokit.method.mpcd.engine.beads.neighbours import CROWDED
-from tests.gpu.conftest import CHIPS
+from tests.gpu.conftest import CHIPS, FURTHER, LONG
 from tests.helpers.kinds_of_fluid import AMONG_MOLECULES, EMBEDDED, SEVERAL_KINDS
 from tests.helpers.on_devices import bulk, pair
 from tests.helpers.small_fluids import assert_same
@@ -47,7 +47,7 @@ MOVING = [Plates("y", upper=Surface(velocity=(0.3, 0.0)))]
 MEASURED = ("stress", "walls")
 SHEARED = bulk(2) | HELD | {"shear_rate": 0.2, "solutes": CHAINS}
 QUICK = {"sheared chains with lists": SHEARED}
-LONG = {
+OTHERS = {
     "beads and a rule that draws": bulk(2) | {"collision": ATPlusA(), "solutes": BALLS},
     "chains from outside": bulk(3) | {"solutes": DRIVEN},
     "chains that plates repel": SLIT | {"walls": MOVING, "solutes": AT_WALLS},
@@ -61,12 +61,15 @@ LONG = {
     **{f"among molecules: {name}": kind for name, kind in AMONG_MOLECULES.items()},
 }  # fmt: skip
 
+WIDE = ("sheared chains with lists", "several kinds", "among molecules: slit", "around a disk")
+
 
 def rows(kinds):
     """Every kind on a chip."""
     for place, (name, kind) in enumerate(kinds.items()):
         device = f"checked {CHIPS[place % len(CHIPS)]}"
-        yield pytest.param(device, kind, marks=pytest.mark.long, id=f"{name}, {device}")
+        marks = LONG if name in WIDE else FURTHER
+        yield pytest.param(device, kind, marks=marks, id=f"{name}, {device}")
 
 
 ON_HOST = [pytest.param("host", kind, id=f"{name}, host") for name, kind in QUICK.items()]
@@ -79,7 +82,7 @@ def of_beads(fluid) -> list:
     return [*moving, fluid.potential_energy(), fluid.bond_vectors()]
 
 
-@pytest.mark.parametrize(("device", "kind"), [*ON_HOST, *rows(QUICK | LONG)])
+@pytest.mark.parametrize(("device", "kind"), [*ON_HOST, *rows(QUICK | OTHERS)])
 def test_solutes_have_the_same_bits(devices, device, kind) -> None:
     parts = {name: part for name, part in kind.items() if name != "measures"}
     both = pair(devices(device), MEASURED, **parts)

@@ -21,7 +21,7 @@ from mesokit import (
     Surface,
     Uniform,
 )
-from tests.gpu.conftest import CHIPS
+from tests.gpu.conftest import CHIPS, FURTHER, LONG
 from tests.helpers.on_devices import pair
 from tests.helpers.shapes import EVERY, SIZE, example, walls_of
 
@@ -32,6 +32,7 @@ MOVING = {2: Surface(velocity=(0.2, 0.0)), 3: Surface(velocity=(0.2, 0.0, 0.1))}
 TURNING = {2: Surface(rotation=0.1), 3: Surface(rotation=(0.0, 0.0, 0.1))}
 QUICK = {"2D turning solid": "checked (9, 0)"}
 ON_HOST = "2D moving plates"
+WIDE = (ON_HOST, "3D plates, SRD+a", "2D solid that tops up, dense", "3D solid, AT, mixture")
 
 
 def fluid(dimension: int, **parts) -> dict:
@@ -93,7 +94,7 @@ def rows():
     for place, kind in enumerate(KINDS):
         chip = QUICK.get(kind, f"checked {CHIPS[place % len(CHIPS)]}")
         for device in (chip, "host") if kind == ON_HOST else (chip,):
-            marks = [] if kind in QUICK else [pytest.mark.long]
+            marks = () if kind in QUICK else LONG if kind in WIDE else FURTHER
             yield pytest.param(device, kind, marks=marks, id=f"{kind}, {device}")
 
 

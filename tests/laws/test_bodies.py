@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mesokit import MaxwellBoltzmann, Plates
+from mesokit import MaxwellBoltzmann, Plates, SRDPlusA
 from mesokit.method.mpcd.body.protocol import Squirming
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
@@ -11,6 +11,7 @@ from tests.helpers.bodies import ROOM, SHAPES, SIZES, SOME, body
 from tests.helpers.small_fluids import assert_same, make_case, make_fluid, mean
 
 FAST = {"timestep": 0.1}
+HELD = FAST | {"thermostat": MaxwellBoltzmann(), "measures": ("stress",)}  # one compiled kind
 
 
 @pytest.mark.parametrize("surface", ["no-slip", "slip"])
@@ -60,7 +61,7 @@ def blocks(samples, number=30):
 def test_bodies_have_the_temperature_of_the_fluid(name, virtual):
     """The published rules make them 12 and 18 % too hot here."""
     some = body(name, 2, number=4, virtual=virtual)
-    fluid = make_fluid((24, 24), bodies=[some], thermostat=MaxwellBoltzmann(), **FAST)
+    fluid = make_fluid((24, 24), bodies=[some], **HELD)
     fluid.advance(100)
     translation, rotation = map(blocks, in_thermal_units(fluid, 6000))
     masses = fluid.bodies.masses
@@ -76,9 +77,7 @@ def test_the_pressure_around_bodies_is_that_of_the_free_fluid(name, virtual):
     """n kT with the density outside: the stress has what bodies give particles, and the other way
     round. The bodies themselves add a thousandth."""
     some = body(name, 2, number=6, virtual=virtual)
-    fluid = make_fluid(
-        (24, 24), bodies=[some], thermostat=MaxwellBoltzmann(), measures=("stress",), **FAST
-    )
+    fluid = make_fluid((24, 24), bodies=[some], **HELD)
     fluid.advance(50)
     pressures = []
     for _ in range(300):
@@ -91,12 +90,17 @@ def test_the_pressure_around_bodies_is_that_of_the_free_fluid(name, virtual):
     assert kinetic < 8.8 and collisional > 1.2 and found.error < 0.1
 
 
+# Three of them are compiled for other tests too
+SHEARED = {"collision": SRDPlusA(angle=90), "thermostat": MaxwellBoltzmann()}
 KINDS = {
     "2D": {"size": ROOM[2], "bodies": SOME[2]},
     "3D": {"size": ROOM[3], "bodies": SOME[3]},
-    "sheared": {"size": ROOM[2], "bodies": SOME[2], "shear_rate": 0.05},
-    "slit": {"size": ROOM[2], "bodies": SOME[2], "walls": [Plates(axis="y")]},
-}
+    "sheared": {"size": ROOM[2], "bodies": SOME[2], "shear_rate": 0.05, **SHEARED},
+    "slit": {
+        "size": ROOM[2], "bodies": SOME[2], "walls": [Plates(axis="y")],
+        "thermostat": MaxwellBoltzmann(),
+    },
+}  # fmt: skip
 
 
 def state_of(fluid):
@@ -107,7 +111,7 @@ def state_of(fluid):
 @pytest.mark.parametrize("kind", KINDS)
 def test_threads_and_restarts_change_no_bit(kind):
     """Also from two bodies that are near each other, at many hits in a step."""
-    case = make_case(**KINDS[kind], thermostat=MaxwellBoltzmann(), timestep=0.2)
+    case = make_case(**KINDS[kind], timestep=0.2)
     alone = CPU(case, 1)
     start(alone)
     alone.advance(60)
@@ -127,7 +131,7 @@ def test_threads_and_restarts_change_no_bit(kind):
 def test_a_squirmer_swims_along_its_axis_and_takes_no_momentum():
     """At B1/2 times 1 - phi, over 1 + 2 b/R, in 2D (Blake 1971), with a slip length of .15."""
     swimmer = body("disk", 2, number=4, swim=Squirming(B1=0.15))
-    fluid = make_fluid((36, 36), bodies=[swimmer], thermostat=MaxwellBoltzmann(), **FAST)
+    fluid = make_fluid((36, 36), bodies=[swimmer], **HELD)
     fluid.advance(200)
     speeds = []
     for _ in range(1200):
@@ -142,12 +146,9 @@ def test_a_squirmer_swims_along_its_axis_and_takes_no_momentum():
 
 def test_a_body_in_shear_turns_with_the_fluid():
     """At half of the shear rate, with a rule that conserves angular momentum."""
-    from mesokit import SRDPlusA
-
     rate = 0.06
     fluid = make_fluid(
-        (20, 20), bodies=[body("disk", 2)], collision=SRDPlusA(angle=90), shear_rate=rate,
-        thermostat=MaxwellBoltzmann(), timestep=0.05,
+        (20, 20), bodies=[body("disk", 2)], shear_rate=rate, timestep=0.05, **SHEARED
     )  # fmt: skip
     fluid.advance(400)
     angles = []
