@@ -250,13 +250,19 @@ def test_momentum_of_fluid_and_bodies_is_kept(at_rest):
     assert kept.value[0, 0] == kept.expected[0, 0] == 874 + 3
 
 
-def test_a_force_with_its_counter_force_keeps_momentum_and_one_alone_does_not():
-    force = {"radius": 1.5, "number": 3, "force": (5.0, 0.0)}
+FORCED = {"radius": 1.5, "number": 3, "force": (5.0, 0.0)}
+
+
+@pytest.mark.long
+def test_a_force_with_its_counter_force_keeps_momentum():
     both = run_of(
-        observe=[mesokit.Conservation(every=1)], bodies=(DiskBody(**force, counter_force=True),)
+        observe=[mesokit.Conservation(every=1)], bodies=(DiskBody(**FORCED, counter_force=True),)
     )["conservation"]
     assert both["largest drift of momentum"].measured < 1e-10
-    alone = run_of(observe=[mesokit.Conservation(every=1)], bodies=(DiskBody(**force),))
+
+
+def test_a_force_alone_gives_momentum():
+    alone = run_of(observe=[mesokit.Conservation(every=1)], bodies=(DiskBody(**FORCED),))
     alone = alone["conservation"]
     assert alone.extra["conserves_momentum"] == 0 and "largest drift of momentum" not in alone
     t, momentum = alone.x["time"], alone.value[:, 1]
