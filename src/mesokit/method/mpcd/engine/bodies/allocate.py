@@ -174,6 +174,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
         taken=zeros((threads, n, 6), np.int64),
         gas=zeros((threads, most_gas, state.GAS_COLUMNS)),
         gas_mass=fluid.mass,
+        together=int("angular momentum" not in fluid.collision.conserves),
         gas_number=zeros((threads, most_gas), np.int64),
         gas_cell=zeros((threads, most_gas), np.int64),
         gas_body=zeros((threads, most_gas), np.int64),

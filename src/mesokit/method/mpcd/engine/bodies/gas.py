@@ -1,6 +1,8 @@
 """Virtual particles in the cells that bodies cut: the gas of a body.
 
-The gas has the density of the fluid and moves with the body. What the body's own rigid motion
+The gas has the density of the fluid and moves with the body. In a cell that a ball cuts it is drawn
+together, as `virtual.per_cell` does for walls; in others, and for rules that conserve angular
+momentum, particles are drawn one by one. What the body's own rigid motion
 already has of the thermal noise is taken out of the drawn velocities. So body and gas have the
 thermal noise of the body once, and its temperature is exact.
 """
@@ -14,7 +16,7 @@ from mesokit.case.box import SLIDING, fold
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import record_length, share, sums_length
 from mesokit.loops.threads import barrier
-from mesokit.method.mpcd.collision.protocol import collide, contribute
+from mesokit.method.mpcd.collision.protocol import collide
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.hits import (
     add_moments,
@@ -35,7 +37,9 @@ from mesokit.method.mpcd.engine.bodies.state import (
     FOUR,
     GAS_ARM,
     GAS_COUNT,
+    GAS_INNER,
     GAS_KEPT,
+    GAS_MASS,
     GAS_PLACE,
     GAS_SPEED,
     GAS_VELOCITY,
@@ -61,17 +65,18 @@ from mesokit.method.mpcd.engine.bodies.stress import (
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
-from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import needs_energy
 from mesokit.method.mpcd.engine.cpu.strips.rows import add_values, load_values
-from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
 from mesokit.method.mpcd.engine.domains.messages.bodies import add_others, is_own_cell
 from mesokit.method.mpcd.engine.domains.messages.shared import key_of
 from mesokit.method.mpcd.engine.embedded.near import note
 from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
+from mesokit.method.mpcd.engine.virtual.of_cell import Many, brought_by_many, cut_at
 from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.fixed_point import add_integers, added_quanta, floats, integers
+from mesokit.scalar.gamma import gamma_number, likely
 from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import optional, scalar, seldom
+from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.poisson import poisson_number
 from mesokit.scalar.random import (
     BODY_GAS_NUMBER,
@@ -85,6 +90,7 @@ from mesokit.scalar.random import (
 from mesokit.scalar.vector import added, added_scaled, dot, first, outer, scaled
 
 MOST_OF_CELL = 2**10  # virtual particles of a body in a cell: more never come
+MOST_DRAWS = 256  # of a place in the part of a cell that is in a ball
 HALF_DIAGONAL = 0.5 * math.sqrt(3.0)
 
 
@@ -184,45 +190,114 @@ class GasCell(NamedTuple):
 
 @seldom
 def fill_cell_of_body(worker, now, physics, bodies, at, cell_key):
-    """The gas of body i in a cell: places of an ideal gas, of which those in the body are kept."""
-    thread, counter = worker.thread, now.counter
-    gas, here = bodies.gas[thread], bodies.counters[thread]
-    i, x, speed, middle, cell = at
-    key = np.int64(i) * np.int64(bodies.cells + 1) + cell_key
-    m, mean = bodies.gas_mass, bodies.density * of_kind(bodies, i, FILLED)
-    width = math.sqrt(physics.kT / m)
-    found = no_moments(middle)
-    for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
-        a, b, c, _ = words(counter, BODY_GAS_PLACE, key, j)
-        within = first((unit_open(a), unit_open(b), unit_open(c)), middle)
-        s = added_scaled(in_cell_at(middle, within), -1.0, x)
-        if depth_at(bodies, i, s) < 0.0:
-            n = here[GAS_COUNT]
-            if n == gas.shape[0]:
-                note(bodies.faults[thread], counter.step, TOO_MANY, i + 1)
-                return
-            a, b, c, e = words(counter, BODY_GAS_VELOCITY, key, j)
-            thermal = scaled(width, normals(middle, a, b, c, e))
-            store(gas, n, GAS_PLACE, added(x, s))
-            store(gas, n, GAS_VELOCITY, thermal)
-            store(gas, n, GAS_ARM, s)
-            gas[n, GAS_SPEED] = speed
-            bodies.gas_number[thread, n] = FIRST_BODY_GAS + key * MOST_OF_CELL + j
-            bodies.gas_cell[thread, n] = cell
-            bodies.gas_body[thread, n] = i
-            here[GAS_COUNT] = n + 1
-            arm, p = scaled(1.0 / bodies.lever, s), scaled(m, thermal)
-            found = added(found, moments_at(m, arm) + p + outer(arm, p))
+    """The gas of body i in a cell."""
+    key = np.int64(at.body) * np.int64(bodies.cells + 1) + cell_key
+    if bodies.together == 1 and of_kind(bodies, at.body, IS_BALL) > 0.5:
+        found = gas_together(worker.thread, now.counter, physics, bodies, at, key)
+    else:
+        found = gas_one_by_one(worker.thread, now.counter, physics, bodies, at, key)
     # The terms of a cell are added before they are rounded, in the order in which they were drawn.
-    add_moments(bodies.sums[thread, i], found, middle, physics_scales(bodies, physics))
+    add_moments(
+        bodies.sums[worker.thread, at.body], found, at.middle, physics_scales(bodies, physics)
+    )
 
 
 @scalar
-def in_cell_at(middle, within):
-    """The place in a cell by the part of its sides."""
-    for k in range(len(middle)):
-        middle = with_item(middle, k, middle[k] + within[k] - 0.5)
-    return middle
+def gas_together(thread, counter, physics, bodies, at, key):
+    """All particles of the gas of a ball in a cell as one, as heavy as they are; its moments.
+
+    The plane that stands for the surface lies as deep as the sphere does on the mean over the cell.
+    That gives their number. The place is that of one of them: with the mean place, the gas would
+    have too little of a moment of inertia, by 8 % of its own at a radius of 2.
+    """
+    middle, radius, mean = at.middle, of_kind(bodies, at.body, RADIUS), mean_gas(bodies, at.body)
+    away = added_scaled(middle, -1.0, at.centre)
+    far = math.sqrt(dot(away, away))
+    normal, sunk = scaled(1.0 / max(far, 1e-9), away), (len(middle) - 1) / (24.0 * radius)
+    mean, _, place = cut_at(mean, far - radius + sunk, normal, away, scaled(0.0, away))
+    number, draw = poisson_number(mean, counter, BODY_GAS_NUMBER, key), 0
+    if number == 0:
+        return no_moments(middle)
+    while draw < MOST_DRAWS:
+        s = uniform_arm(counter, at, key, draw)
+        if dot(s, s) < radius * radius:
+            place, draw = s, MOST_DRAWS
+        draw += 1
+    return put_gas(thread, counter, physics, bodies, at, Drawn(key, 0, number, place))
+
+
+@scalar
+def gas_one_by_one(thread, counter, physics, bodies, at, key):
+    """Particles at places of an ideal gas, of which those in the body are kept; their moments."""
+    found, mean = no_moments(at.middle), mean_gas(bodies, at.body)
+    for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
+        s = uniform_arm(counter, at, key, j)
+        if depth_at(bodies, at.body, s) < 0.0:
+            drawn = Drawn(key, j, 1, s)
+            found = added(found, put_gas(thread, counter, physics, bodies, at, drawn))
+    return found
+
+
+@scalar
+def mean_gas(bodies, i):
+    """Mean number of particles of the gas of body i in a cell within it."""
+    return bodies.density * of_kind(bodies, i, FILLED)
+
+
+class Drawn(NamedTuple):
+    """Particles of the gas: key of their cell, number of the first, how many, and their arm."""
+
+    key: np.int64
+    draw: int
+    number: int
+    arm: tuple
+
+
+@seldom
+def put_gas(thread, counter, physics, bodies, at, drawn):
+    """Put particles of the gas on the list of this thread, as one; their moments."""
+    key, draw, number, s = drawn
+    n, gas, zero = bodies.counters[thread, GAS_COUNT], bodies.gas[thread], at.middle
+    if n == gas.shape[0]:
+        note(bodies.faults[thread], counter.step, TOO_MANY, at.body + 1)
+        return no_moments(zero)
+    a, b, c, e = words(counter, BODY_GAS_VELOCITY, key, draw)
+    m = bodies.gas_mass * number
+    thermal = scaled(math.sqrt(physics.kT / m), normals(zero, a, b, c, e))
+    store(gas, n, GAS_PLACE, added(at.centre, s))
+    store(gas, n, GAS_VELOCITY, thermal)
+    store(gas, n, GAS_ARM, s)
+    gas[n, GAS_SPEED], gas[n, GAS_MASS] = at.speed, m
+    gas[n, GAS_INNER] = inner_energy(counter, physics, key, number)
+    bodies.gas_number[thread, n] = FIRST_BODY_GAS + key * MOST_OF_CELL + draw
+    bodies.gas_cell[thread, n] = at.cell
+    bodies.gas_body[thread, n] = at.body
+    bodies.counters[thread, GAS_COUNT] = n + 1
+    arm, p = scaled(1.0 / bodies.lever, s), scaled(m, thermal)
+    return moments_at(m, arm) + p + outer(arm, p)
+
+
+@scalar
+def inner_energy(counter, physics, key, number):
+    """The sum of m v^2 of so many particles about their mean velocity."""
+    if number == 1 or not needs_energy(physics.energy):
+        return 0.0
+    freedom = float(len(physics.zero) * (number - 1))
+    _, _, a, b = words(counter, BODY_GAS_NUMBER, key, 0)
+    inner, sure = likely(a, b, freedom)
+    if not sure:
+        inner = gamma_number(freedom, counter, BODY_GAS_NUMBER, key)
+    return inner * (2.0 * physics.kT)
+
+
+@scalar
+def uniform_arm(counter, at, key, draw):
+    """The arm of a uniform place in a cell."""
+    a, b, c, _ = words(counter, BODY_GAS_PLACE, key, draw)
+    within, s = first((unit_open(a), unit_open(b), unit_open(c)), at.middle), at.middle
+    for k in range(len(s)):
+        s = with_item(s, k, s[k] + within[k] - 0.5)
+    return added_scaled(s, -1.0, at.centre)
 
 
 @scalar
@@ -253,16 +328,16 @@ def move_gas(thread, now, physics, fluid, bodies, n):
         normal = normal_at(bodies, i, s, 0.0)
     v = added(wall_velocity(bodies, i, s, normal, gas[n, GAS_SPEED]), noise)
     r, v, _ = fold(now.box, r, v, now.grid.shift)
-    m, number = bodies.gas_mass, bodies.gas_number[thread, n]
-    kept, own = contribute(physics.rule, now.counter, (number, 0), m, v, in_cell(r, now.grid))
-    cell = bodies.gas_cell[thread, n]
+    m, identity = gas[n, GAS_MASS], (bodies.gas_number[thread, n], 0)
+    many = Many(np.int64(m / bodies.gas_mass + 0.5), m, gas[n, GAS_INNER])
+    found = brought_by_many(physics, now, identity, many, r, v)
     store(gas, n, GAS_PLACE, r)
     store(gas, n, GAS_VELOCITY, v)
-    store(gas, n, GAS_KEPT, kept)
-    sums = fluid.cells.sums[thread]
+    store(gas, n, GAS_KEPT, found.kept)
+    sums, cell = fluid.cells.sums[thread], bodies.gas_cell[thread, n]
     place = np.uint64(cell) * np.uint64(sums_length(len(physics.terms)))
-    sums[place] += optional(tally(physics.energy, m, v), 1)
-    add_values(sums, place + np.uint64(1), terms_of(physics, m, v, own))
+    sums[place] += found.tallied
+    add_values(sums, place + np.uint64(1), found.terms)
 
 
 @stage
@@ -277,7 +352,7 @@ def take_recoil(worker, now, physics, fluid, bodies):
         record = cell * np.uint64(record_length(len(physics.coefficients)))
         needed = load_values(fluid.cells.coefficients, record, physics.coefficients)
         after = collide(physics.rule, needed, kept, in_cell(r, now.grid))
-        gain = scaled(bodies.gas_mass, added_scaled(after, -1.0, v))
+        gain = scaled(gas[n, GAS_MASS], added_scaled(after, -1.0, v))
         units = added_quanta(gain, scale, integers(zero))
         taken = bodies.taken[thread, i]
         add_integers(taken, units)

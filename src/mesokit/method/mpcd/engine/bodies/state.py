@@ -50,9 +50,11 @@ SPARE = 0.01  # cells by which hits may lengthen the path of a body in a step, b
 NO_BODY = -1
 MOST_PARTNERS = 48  # bodies on the list of another one
 SUMS = 27  # whole numbers of a body that threads add up
-# Columns of a particle of the gas of a body; the last is the speed of its image along x.
-GAS_PLACE, GAS_VELOCITY, GAS_KEPT, GAS_ARM, GAS_SPEED = 0, 3, 6, 9, 12
-GAS_COLUMNS = 13
+# Columns of an entry of the gas of a body: the last are the speed of its image along x, its mass,
+# and the sum of m v^2 of its particles about their mean velocity.
+GAS_PLACE, GAS_VELOCITY, GAS_KEPT, GAS_ARM = 0, 3, 6, 9
+GAS_SPEED, GAS_MASS, GAS_INNER = 12, 13, 14
+GAS_COLUMNS = 15
 # Counters of a thread.
 COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT = 0, 1, 2, 3, 4
 COUNTERS = 8
@@ -76,8 +78,9 @@ class MovingBodies(NamedTuple):
     partners (bodies, MOST_PARTNERS): other bodies that may come near.
     values (threads, most, NEAR_COLUMNS), numbers (threads, most, NEAR_NUMBERS): particles near.
     sums (threads, bodies, SUMS): of the hits in hand; taken (threads, bodies, 6): impulses, in
-    whole numbers. gas (threads, most, GAS_COLUMNS): virtual particles, each of gas_mass;
-    gas_number, gas_cell, gas_body (threads, most): number, cell and body of each.
+    whole numbers. gas (threads, most, GAS_COLUMNS): virtual particles, of gas_mass, or all of a
+    cell that a ball cuts; gas_number, gas_cell, gas_body (threads, most): number, cell and body of
+    each entry. together: 1 where the rule lets those of a cell be drawn at once, else 0.
     tensor (threads, 2, 2 d^2): terms of the stress, before and after the collision.
     counters (threads, COUNTERS); faults (threads, 8): the first thing that goes wrong; work
     (threads, WORK), chosen (threads, LANES): scratch memory; waste: what walls take by flights that
@@ -113,6 +116,7 @@ class MovingBodies(NamedTuple):
     taken: Any
     gas: Any
     gas_mass: float
+    together: int
     gas_number: Any
     gas_cell: Any
     gas_body: Any

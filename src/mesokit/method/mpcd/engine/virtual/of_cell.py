@@ -102,15 +102,29 @@ def brought_together(physics, now, key, number, r, v, inner):
 
     `v` is their mean velocity, `inner` their `likely_energy`.
     """
-    (m,), zero = physics.masses, physics.zero
-    d, mass, m_v_squared = len(zero), m * number, 0.0
+    (m,), d, m_v_squared = physics.masses, len(physics.zero), 0.0
     if needs_energy(physics.energy):
         if inner < 0.0:
             inner = gamma_number(float(d * (number - 1)), now.counter, VIRTUAL_NUMBER, key)
         m_v_squared = inner * (2.0 * physics.kT)
     identity = (FIRST_VIRTUAL + key * MOST, 0)
+    return brought_by_many(physics, now, identity, Many(number, m * number, m_v_squared), r, v)
+
+
+class Many(NamedTuple):
+    """Virtual particles as one: number, mass, and sum of m v^2 about their mean velocity."""
+
+    number: np.int64
+    mass: float
+    inner: float
+
+
+@scalar
+def brought_by_many(physics, now, identity, many, r, v):
+    """What virtual particles with the mean velocity v bring together to the cell of r."""
+    number, mass, m_v_squared = many
     kept, own = contribute(physics.rule, now.counter, identity, mass, v, in_cell(r, now.grid))
-    for k in range(d):
+    for k in range(len(v)):
         m_v_squared += mass * v[k] * v[k]
     terms = scaled(mass, v) + many_energy_term(physics.energy, m_v_squared) + own
     whole = _of_many(number, rounded(terms, physics.scales))
