@@ -11,7 +11,7 @@ from __future__ import annotations
 import csv
 import os
 import sys
-from collections.abc import Generator, Iterable
+from collections.abc import Generator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -40,11 +40,16 @@ def cpu_seconds() -> float:
 
 
 class Durations:
-    """Adds up the setup, call and teardown of each test, and writes a row for each at the end."""
+    """Adds up the setup, call and teardown of each test, and writes a row when it has ended.
+
+    So the rows are there too if the tests are killed.
+    """
 
     def __init__(self, path: Path | None) -> None:
         self.path = path  # None in workers: they measure, the controller writes
         self.rows: dict[str, Row] = {}
+        if path is not None:
+            begin(path)
         self.before = cpu_seconds()
 
     def pytest_runtest_logstart(self) -> None:
@@ -59,27 +64,32 @@ class Durations:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         old = self.rows.get(report.nodeid, Row(report.nodeid, 0.0, 0.0))
-        cpu = old.cpu + report.cpu_seconds
+        cpu = old.cpu + getattr(report, "cpu_seconds", 0.0)  # a worker that died measured none
         self.rows[report.nodeid] = Row(report.nodeid, old.seconds + report.duration, cpu)
+        if self.path is not None and report.when == "teardown":
+            add(self.path, self.rows[report.nodeid])
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         if self.path is not None:
-            write(self.path, self.rows.values())
             # workers have ended and are counted, with their imports and collections
             terminalreporter.write_line(f"{cpu_seconds() / 60:.1f} CPU minutes: see {self.path}")
 
 
-def write(path: Path, rows: Iterable[Row]) -> None:
-    """Write rows as a table with a header, and make its folder."""
+def begin(path: Path) -> None:
+    """A table with a header and no row yet, in a folder that is made."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(Row._fields)
-        table.writerows((r.test, f"{r.seconds:.3f}", f"{r.cpu:.2f}") for r in rows)
+        csv.writer(file).writerow(Row._fields)
+
+
+def add(path: Path, row: Row) -> None:
+    """Add a row to the table."""
+    with path.open("a", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerow((row.test, f"{row.seconds:.3f}", f"{row.cpu:.2f}"))
 
 
 def read(path: Path) -> list[Row]:
-    """The rows of a file that `write` made."""
+    """The rows of a file that `begin` and `add` made."""
     with path.open(encoding="utf-8", newline="") as file:
         return [
             Row(row["test"], float(row["seconds"]), float(row["cpu"]))

@@ -7,18 +7,30 @@ from types import SimpleNamespace
 durations = SimpleNamespace(**runpy.run_path(str(Path(__file__).parents[1] / "durations.py")))
 
 
-def report(test: str, seconds: float, cpu: float) -> SimpleNamespace:
-    return SimpleNamespace(nodeid=test, duration=seconds, cpu_seconds=cpu)
+PHASES = {"setup": (0.5, 0.25), "call": (1.0, 0.5), "teardown": (0.25, 0.0)}
 
 
-def test_phases_are_added_up_and_come_back_from_the_file(tmp_path: Path) -> None:
-    plugin, path = durations.Durations(None), tmp_path / "new" / "test.csv"
+def reports(test: str) -> list[SimpleNamespace]:
+    return [
+        SimpleNamespace(nodeid=test, when=when, duration=seconds, cpu_seconds=cpu)
+        for when, (seconds, cpu) in PHASES.items()
+    ]
+
+
+def test_phases_are_added_up_and_are_in_the_file_before_the_end(tmp_path: Path) -> None:
+    path = tmp_path / "new" / "test.csv"
+    plugin = durations.Durations(path)
     names = ["tests/laws/test_a.py::test_x[a, b]", "src/mesokit/a/b.py::mesokit.a.b"]
-    for name in names:
-        for seconds, cpu in [(0.5, 0.25), (1.0, 0.5), (0.25, 0.0)]:
-            plugin.pytest_runtest_logreport(report(name, seconds, cpu))
-    durations.write(path, plugin.rows.values())
+    for report in [*reports(names[0]), *reports(names[1]), *reports("cut off")[:2]]:
+        plugin.pytest_runtest_logreport(report)
     rows = durations.read(path)
     assert rows == [(name, 1.75, 0.75) for name in names]
     assert [row.folder for row in rows] == ["tests/laws", "src"]
     assert durations.text(rows).splitlines()[-1].split() == ["3.5", "1.5", "2", "all"]
+
+
+def test_a_worker_that_dies_measures_nothing() -> None:
+    plugin = durations.Durations(None)
+    died = SimpleNamespace(nodeid="tests/a.py::test_b", when="call", duration=2.0)
+    plugin.pytest_runtest_logreport(died)
+    assert plugin.rows == {died.nodeid: (died.nodeid, 2.0, 0.0)}
