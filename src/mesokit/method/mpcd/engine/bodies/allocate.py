@@ -183,6 +183,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
         faults=zeros((threads, 8), np.int64),
         work=zeros((threads, state.WORK)),
         chosen=zeros((threads, LANES), np.int64),
+        flights=zeros((threads, 7, LANES)),
         waste=zeros((threads, waste), np.int64),
         solid=walls,
         pull=balancing_pull(case),

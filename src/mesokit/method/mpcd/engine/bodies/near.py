@@ -58,6 +58,7 @@ LISTS_HOLD = 0.15  # cells: lists are made anew when a surface has gone so far
 PARTNERS_HOLD = 0.5  # cells: the farthest that surfaces may go with one list of partners
 PARTS = 64.0  # of a cell: what is clear is kept in whole numbers of these
 FAR = np.uint8(LIST_REACH * PARTS)
+RADIUS_OF = 6  # row of the flights of candidates, after places and velocities
 FARTHEST, ALLOWANCE = 250, 251  # where scratch memory has how far
 # surfaces go with one list
 
@@ -262,7 +263,12 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
     Their lanes become the first entries of `marks`; returns their number.
     """
     zero, thread, candidates, chosen = physics.zero, worker.thread, 0, 0
-    d, box, allowance = len(zero), box_at_start(now, physics), bodies.work[thread, ALLOWANCE]
+    time, d, box, allowance = (
+        physics.timestep,
+        len(zero),
+        box_at_start(now, physics),
+        bodies.work[thread, ALLOWANCE],
+    )
     cubes, any_near = bodies.cubes[thread], np.int32(0)
     # Coarse test of all lanes at t, before the flight, by what is clear around cubes. Three loops,
     # of which the first and the last become vectors: between them is the gather from the table.
@@ -282,14 +288,24 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
         mark = marks[i]
         marks[candidates] = i
         candidates += mark
-    # Exact test of the few candidates, by the bodies on their lists.
+    # Most candidates are near one ball alone, and fly past it: that is seen in a loop over vectors.
+    flights = bodies.flights[thread]
     for j in range(candidates):
-        i = marks[j]
+        r, v = load_particle(strip, marks[j], 0, zero), load_particle(strip, marks[j], d, zero)
+        path = longest_flight(bodies, physics, r, v)
+        cell = list_of(bodies, box, r, path + allowance)
+        cubes[j] = np.int32(cell)
+        store_flight(bodies, physics, box, cell, r, v, path, flights, j)
+    for j in range(candidates):
+        y, w = load_flight(flights, 0, j, zero), load_flight(flights, d, j, zero)
+        flights[RADIUS_OF, j] = 1.0 if meets_ball(flights[RADIUS_OF, j], y, w, time) else 0.0
+    # Exact test of the few others, by the bodies on their lists.
+    for j in range(candidates):
+        if flights[RADIUS_OF, j] == 0.0:
+            continue
+        i, cell = marks[j], np.int64(cubes[j])
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         path = longest_flight(bodies, physics, r, v)
-        cell = np.int64(cell_of(bodies, box, r))
-        if not path + allowance < LIST_REACH or bodies.near_count[cell] == EVERY_BODY:
-            cell = np.int64(EVERY_BODY)
         if may_hit(bodies, physics, box, cell, r, v, path):
             n = bodies.counters[thread, COUNT]
             if n == bodies.values.shape[1]:
@@ -336,6 +352,14 @@ def cube_of(bodies, box, r):
 
 
 @scalar
+def list_of(bodies, box, r, reach):
+    """The cell whose list has all bodies within reach of a place; EVERY_BODY where none has."""
+    cell = np.int64(cell_of(bodies, box, r))
+    holds = reach < LIST_REACH and bodies.near_count[cell] != EVERY_BODY
+    return cell if holds else np.int64(EVERY_BODY)
+
+
+@scalar
 def bodies_near(bodies, cell):
     """How many bodies are on the list of a cell, or all where a list does not hold."""
     return len(bodies.rows) if cell == EVERY_BODY else bodies.near_count[cell]
@@ -355,19 +379,13 @@ def may_hit(bodies, physics, box, cell, r, v, path):
     change must lie on the straight flight of a particle that no force and no wall bends.
     """
     time = physics.timestep
-    square = dot(v, v)
-    straight = path * path <= time * time * square * (1.0 + 1e-12)
     for n in range(bodies_near(bodies, cell)):
         i = body_near(bodies, cell, n)
         x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
         away, stride, kind = added_scaled(r, -1.0, x), bodies.rows[i, STRIDE], bodies.kind[i]
         if bodies.kinds[kind, IS_BALL] > 0.5:
-            radius = bodies.kinds[kind, RADIUS] + stride
-            if straight:
-                u = state.with_shear(load(bodies.rows, i, MEAN_VELOCITY, r), speed)
-                if meets_ball(radius, away, added_scaled(v, -1.0, u), time):
-                    return True
-            elif dot(away, away) <= (radius + path) * (radius + path):
+            radius, w = flight_by_ball(bodies, i, v, speed, path, time)
+            if meets_ball(radius, away, w, time):
                 return True
         else:
             q = load(bodies.rows, i, TURN, state.FOUR)
@@ -378,14 +396,45 @@ def may_hit(bodies, physics, box, cell, r, v, path):
 
 
 @scalar
+def flight_by_ball(bodies, i, v, speed, path, time):
+    """Radius of a ball that a flight must enter to hit body i, and the velocity of the flight.
+
+    A flight that is bent may go anywhere on its path: it starts in a larger ball, or meets none.
+    """
+    radius = of_kind(bodies, i, RADIUS) + bodies.rows[i, STRIDE]
+    u = state.with_shear(load(bodies.rows, i, MEAN_VELOCITY, v), speed)
+    straight = path * path <= time * time * dot(v, v) * (1.0 + 1e-12)
+    part = 1.0 if straight else 0.0
+    return radius + (1.0 - part) * path, scaled(part, added_scaled(v, -1.0, u))
+
+
+@scalar
 def meets_ball(radius, y, w, time):
     """Whether a straight flight from y enters a ball about 0 within a time, or starts in it."""
     approach, square = dot(y, w), dot(w, w)
-    c = dot(y, y) - radius * radius
-    if c <= 0.0:
-        return True
-    if approach >= 0.0:
-        return False
-    # The distance is least at the time -approach/square, or at the end of the flight.
-    end = min(-approach / square, time)
-    return c + end * (2.0 * approach + end * square) <= 0.0
+    # The distance is least at the time -approach/square, or at an end of the flight.
+    end = min(max(-approach / max(square, 1e-300), 0.0), time)
+    return dot(y, y) - radius * radius + end * (2.0 * approach + end * square) <= 0.0
+
+
+@scalar
+def store_flight(bodies, physics, box, cell, r, v, path, flights, j):
+    """Note the flight of a candidate by the ball that is alone near it; else one that meets it."""
+    y, w, radius = r, v, BEYOND
+    if cell != EVERY_BODY and bodies.near_count[cell] == 1:
+        i = np.int64(bodies.near[cell, 0])
+        if of_kind(bodies, i, IS_BALL) > 0.5:
+            x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
+            radius, w = flight_by_ball(bodies, i, v, speed, path, physics.timestep)
+            y = added_scaled(r, -1.0, x)
+    for k in range(len(r)):
+        flights[k, j], flights[len(r) + k, j] = y[k], w[k]
+    flights[RADIUS_OF, j] = radius
+
+
+@scalar
+def load_flight(flights, first, j, zero):
+    """The place or the velocity of a candidate."""
+    for k in range(len(zero)):
+        zero = with_item(zero, k, flights[first + k, j])
+    return zero

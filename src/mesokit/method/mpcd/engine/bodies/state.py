@@ -83,8 +83,8 @@ class MovingBodies(NamedTuple):
     each entry. together: 1 where the rule lets those of a cell be drawn at once, else 0.
     tensor (threads, 2, 2 d^2): terms of the stress, before and after the collision.
     counters (threads, COUNTERS); faults (threads, 8): the first thing that goes wrong; work
-    (threads, WORK), chosen (threads, LANES): scratch memory; waste: what walls take by flights that
-    do not count.
+    (threads, WORK), chosen (threads, LANES), flights (threads, 7, LANES): scratch memory; waste:
+    what walls take by flights that do not count.
     solid: walls as the potential of gaps sees them, or (). pull: the uniform acceleration of all
     that balances forces on bodies. messages: to other ranks, or ().
     """
@@ -125,6 +125,7 @@ class MovingBodies(NamedTuple):
     faults: Any
     work: Any
     chosen: Any
+    flights: Any
     waste: Any
     solid: tuple
     pull: tuple
