@@ -101,10 +101,8 @@ def picture(
     ]
     notes += [_few(case, panels, flows), when]
     if moving and bodies:
-        traced = (
-            f" and their paths in ${rounded(view.traces, 4)}\\,\\tau$ before" if view.traces else ""
-        )
-        notes += [f"bodies at {at(bodies.time, 4)}{traced}", moving.where(kind == "bodies")]
+        paths = f", their paths of {at(view.traces, 4, '')}" if view.traces else ""
+        notes += [f"bodies at {at(bodies.time, 4)}{paths}", moving.where(kind == "bodies")]
     for spheres in filter(None, (flow.spheres for flow in flows)):
         notes += [f"at {at(spheres.time, 4)}", spheres.remark, spheres.note]
     if any(panel.NEEDS == "headings" for panel in panels):
