@@ -162,7 +162,10 @@ from mesokit.method.mpcd.numbers import Derived as Derived
 from mesokit.method.mpcd.observe.body_correlation import BodyCorrelation as BodyCorrelation
 from mesokit.method.mpcd.observe.body_displacement import BodyDisplacement as BodyDisplacement
 from mesokit.method.mpcd.observe.body_drift import BodyDrift as BodyDrift
+from mesokit.method.mpcd.observe.body_flow import BodyFlow as BodyFlow
 from mesokit.method.mpcd.observe.body_motion import BodyMotion as BodyMotion
+from mesokit.method.mpcd.observe.body_order import BodyOrder as BodyOrder
+from mesokit.method.mpcd.observe.body_profile import BodyProfile as BodyProfile
 from mesokit.method.mpcd.observe.body_tracks import BodyTracks as BodyTracks
 from mesokit.method.mpcd.observe.bond_correlation import BondCorrelation as BondCorrelation
 from mesokit.method.mpcd.observe.bond_length import BondLength as BondLength

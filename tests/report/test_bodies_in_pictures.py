@@ -124,6 +124,27 @@ def test_images_are_drawn_over_the_edges_that_are_open():
     assert len(shown.outlines) == 2
 
 
+def test_traces_are_drawn_on_both_sides_of_an_edge():
+    case = make_case(SIZE, bodies=[body("disk", 2)])
+    frames = frames_of(case, [[9, 9]], [[15, 9]], [[1, 10]])
+    pieces = BodyFrames(case, frames, ("x", "y"), traces=1.0).at().traces
+    np.testing.assert_allclose(pieces, [[[-1, 9], [1, 10]], [[15, 9], [17, 10]]])
+    assert len(BodyFrames(case, frames, ("x", "y"), traces=5).at().traces) == 3
+    assert len(BodyFrames(case, frames, ("x", "y"), traces=5).at(1.0).traces) == 1
+    lines = picture(case, {}, frames, "bodies", traces=2.0).axes[0].collections
+    found = [c for c in lines if isinstance(c, mpl.collections.LineCollection)]
+    assert [len(c.get_segments()) for c in found] == [3, 3]  # black over white
+    with pytest.raises(CaseError, match=r"^traces = 0: expected a time above 0$"):
+        picture(case, {}, frames, "bodies", traces=0)
+    with pytest.raises(CaseError, match=r"^traces = 5: the case has no bodies that move"):
+        picture(
+            make_case(SIZE, observe=[FRAMES]),
+            results_of(make_case(SIZE, observe=[FRAMES]), 5),
+            None,
+            traces=5,
+        )
+
+
 @pytest.mark.parametrize(("slid", "expected"), [(0.9, [-0.1, 15.9]), (15.9, [-1.1, 14.9])])
 def test_images_above_have_slid_under_shear(slid, expected):
     """Also by nearly a box, where one more lies over the edge."""

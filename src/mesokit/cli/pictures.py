@@ -96,6 +96,12 @@ _choices = options(  # the part of the flow that is drawn
         help="Of spheres: speed, log-speed, relative-speed, spin, neighbours, psi6, kind.  [speed]",
     ),
     click.option(
+        "--traces",
+        type=Finite(),
+        metavar="T",
+        help="Time over which the paths of bodies are shown.",
+    ),
+    click.option(
         "--states",
         callback=_names,
         metavar="A,B",

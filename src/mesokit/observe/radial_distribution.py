@@ -78,20 +78,20 @@ class RadialDistribution(OfMethod):
     """Pairs at a distance r over those of as many independent particles, in a periodic box.
 
     Of a fluid some particles are looked at, which changes the error bars and not the mean; of
-    solutes all beads, and of other methods all spheres. g at contact of equal hard spheres is
-    extrapolated from shells just beyond it.
+    solutes all beads, of bodies all centres, and of other methods all spheres. g at contact of
+    equal hard spheres is extrapolated from shells just beyond it.
     """
 
     quantity: Literal["radial-distribution"] = tag("radial-distribution")
     value_label = "g(r)"
     units: ClassVar[dict[str, str]] = {"r": "a"}
     needs_fluid: ClassVar[bool] = False
-    of: Literal["beads", "particles"] | None = param(None, doc=OF)
+    of: Literal["beads", "particles", "bodies"] | None = param(None, doc=OF)
     kinds: Many[int | str] = param(
         (),
         doc="one kind, or two: those of the second about one of the first (all unless said); names "
-        "or numbers from 1, of solutes.polymers, fluid.species or spheres.kinds; 'fluid': its "
-        "molecules",
+        "or numbers from 1, of solutes.polymers, fluid.species, bodies or spheres.kinds; 'fluid': "
+        "its molecules",
         max_length=2,
     )
     pairs: Literal["all", "between"] = param(
@@ -100,7 +100,7 @@ class RadialDistribution(OfMethod):
     reach: float | None = param(
         None,
         doc="longest distance (half of the shortest side unless said; of fluids 5 at most, of "
-        "spheres 5 of the largest diameter)",
+        "bodies and spheres 5 of the largest diameter)",
         unit="a",
         gt=0,
     )
@@ -110,8 +110,9 @@ class RadialDistribution(OfMethod):
     @field_validator("of", mode="before")
     @classmethod
     def _no_kind(cls, of: Any) -> Any:
-        if isinstance(of, str) and of not in ("beads", "particles"):
-            raise ValueError("expected 'beads' or 'particles'; kinds are chosen by `kinds`")
+        if isinstance(of, str) and of not in ("beads", "particles", "bodies"):
+            known = "expected 'beads', 'particles' or 'bodies'"
+            raise ValueError(f"{known}; kinds are chosen by `kinds`")
         return of
 
     def check(self, case: Case) -> None:

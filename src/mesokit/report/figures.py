@@ -30,7 +30,7 @@ from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
 from mesokit.report.flow.layout import page_width
 from mesokit.report.flow.source import axes_of
-from mesokit.report.particles import body_tracks, flocks, snapshots, tracks
+from mesokit.report.particles import body_flow, body_profile, body_tracks, flocks, snapshots, tracks
 from mesokit.report.style import STYLE, WIDTH, fonts, height_of
 from mesokit.seam.in_units import showing
 from mesokit.seam.result import Result
@@ -66,6 +66,8 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "signal": series.draw_signal,
     "tracks": tracks.draw,
     "body tracks": body_tracks.draw,
+    "body flow": body_flow.draw,
+    "body profile": body_profile.draw,
     "order": flocks.draw_order,
     "bands": flocks.draw_bands,
 }

@@ -94,13 +94,13 @@ def points(ax: Any, x: Any, value: Any, error: Any, number: int = 0, **look: Any
     ax.errorbar(x, value, error, **usual | {"mfc": "white"} | look)
 
 
-def mean_line(ax: Any, mean: float, error: float, label: str = "mean") -> None:
+def mean_line(ax: Any, mean: float, error: float, label: str = "mean", number: int = 1) -> None:
     """Draw a mean as a dashed line, and its standard error, if known, as a band."""
-    known = bool(np.isfinite(error))
+    known, colour = bool(np.isfinite(error)), COLOURS[number % len(COLOURS)]
     label = f"{label}, {ERROR}" if known else label
-    ax.axhline(mean, color=COLOURS[1], ls="--", lw=1.3, label=label)
+    ax.axhline(mean, color=colour, ls="--", lw=1.3, label=label)
     if known:
-        ax.axhspan(mean - error, mean + error, color=COLOURS[1], alpha=0.25, lw=0)
+        ax.axhspan(mean - error, mean + error, color=colour, alpha=0.25, lw=0)
 
 
 def time_axis(ax: Any, time: Any, unit: str) -> None:

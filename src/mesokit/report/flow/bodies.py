@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
 from mesokit.case.case import Case
+from mesokit.case.component import show
+from mesokit.errors import CaseError
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.caption import in_cells
 from mesokit.report.flow.body_distance import distance
@@ -26,7 +28,8 @@ class BodyFrames:
     """The bodies that a trajectory has, seen along the third axis of the box.
 
     `plane` is the place along that axis where flow maps cut them, None in 2D; `behind` says that
-    pictures in space show only those with a centre behind it.
+    pictures in space show only those with a centre behind it. `traces` is the time over which the
+    paths of their centres are shown.
     """
 
     def __init__(
@@ -36,8 +39,10 @@ class BodyFrames:
         axes: tuple[str, str],
         plane: float | None = None,
         behind: bool = False,
+        traces: float = 0.0,
     ) -> None:
         self.case, self.reader, self.plane, self.behind = case, reader, plane, behind
+        self.traces = traces
         self.shapes = method_of(case).bodies(case)
         before = [group for group in case.groups if "orientation" not in group.has]
         own = reader.id - sum(group.number for group in before)
@@ -76,6 +81,7 @@ class BodyFrames:
             kinds=np.array(kinds, np.int64),
             arrows=np.array(arrows, float).reshape(-1, 2, 2),
             swimmers=np.array(swimmers, np.int64),
+            traces=self._traces(index),
             called=self.called,
             time=now,
             placed=None if self.third is None else partial(self._placed, places, turns, now),
@@ -95,6 +101,27 @@ class BodyFrames:
         if solid and any(shape.half_axis > 0 for shape in self.shapes):
             words.append("dark: the front of those that swim")
         return "; ".join(words)
+
+    def _traces(self, last: int) -> Array:
+        """Pieces (m, 2, 2) of the paths of their centres up to a frame, from frame to frame by the
+        shorter way; those over an edge of the picture are there on both sides."""
+        times = self.reader.time
+        frames = [k for k in range(last + 1) if times[k] >= times[last] - self.traces]
+        if len(frames) < 2:
+            return np.zeros((0, 2, 2))
+        size = np.array(self.case.box.size)[self.columns]
+        closed = method_of(self.case).enclosure.closed_axes(self.case)
+        open_ends = np.array([k not in closed for k in self.columns])
+        path = np.stack([self.reader[k]["position"][self.rows] for k in frames]).astype(float)
+        starts = path[:-1][..., self.columns].reshape(-1, 2)
+        steps = path[1:][..., self.columns].reshape(-1, 2) - starts
+        steps -= open_ends * size * np.rint(steps / size)
+        ends = starts + steps
+        found = []
+        for inside in (starts, ends):
+            shift = open_ends * size * np.floor(inside / size)
+            found.append(np.stack([starts - shift, ends - shift], axis=1))
+        return np.unique(np.concatenate(found), axis=0)
 
     @cached_property
     def _radii(self) -> Array:
@@ -174,15 +201,31 @@ def bodies_of(
     axes: tuple[str, str],
     plane: float | None = None,
     behind: bool = False,
+    traces: float | None = None,
 ) -> BodyFrames | None:
-    """The bodies of a run, None if it kept none, or of any that is not round no orientation."""
+    """The bodies of a run, None if it kept none, or of any that is not round no orientation.
+
+    Raises CaseError for traces that there are not.
+    """
+    if traces is not None:
+        require_traces(case, traces)
     if trajectory is None or not len(trajectory) or "position" not in trajectory.fields:
         return None
     shapes = method_of(case).bodies(case)
     if not shapes or ("orientation" not in trajectory.fields and not all(map(_round, shapes))):
         return None
-    found = BodyFrames(case, trajectory, axes, plane, behind)
+    found = BodyFrames(case, trajectory, axes, plane, behind, traces or 0.0)
     return found if len(found.rows) else None
+
+
+def require_traces(case: Case, traces: float) -> None:
+    """Raise CaseError for traces of a case without bodies or with sliding images, or of no time."""
+    if not method_of(case).bodies(case):
+        raise CaseError(f"traces = {show(traces)}: the case has no bodies that move; leave it out")
+    if case.box.sheared:
+        raise CaseError(f"traces = {show(traces)}: not under box.shear_rate, whose images slide")
+    if not traces > 0:
+        raise CaseError(f"traces = {show(traces)}: expected a time above 0")
 
 
 def _round(shape: BodyShape) -> bool:

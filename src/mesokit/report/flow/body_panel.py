@@ -19,6 +19,7 @@ FILLS = (
 )  # of kinds (as many as `COLOURS`), far apart in grey
 DARK = 2  # from which fill on arrows are white
 EDGE, HALO = 0.9, 0.7  # points: of edges, and of white around them, for dark maps
+TRACE = 0.7  # points
 ABOVE = 5.5  # the solids, below beads
 DPI = 200  # of an image of bodies, as figures are saved
 
@@ -43,6 +44,7 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     dots, corners = inches_of(ax)[0] * DPI / (right - left), ((left, low), (right, high))
     colours = np.array([to_rgb(colour) for colour in FILLS])
+    _traces(ax, flow.bodies, 1.5)
     image = shaded_parts(flow.bodies.placed(), colours, flow.bodies.room, *corners, dots)
     ax.imshow(image, origin="lower", extent=(left, right, low, high), zorder=2)
 
@@ -52,6 +54,7 @@ def draw_over(ax: Any, bodies: Bodies) -> None:
     from matplotlib.collections import PathCollection
     from matplotlib.path import Path
 
+    _traces(ax, bodies, ABOVE - 0.2)
     if not bodies.outlines:
         return
     paths = [Path.make_compound_path(*map(Path, lines)) for lines in bodies.outlines]
@@ -68,6 +71,15 @@ def draw_over(ax: Any, bodies: Bodies) -> None:
         shape = {"width": 0.09 * long, "headlength": 4.0, "headaxislength": 3.5, "minlength": 0.0}
         inks = ["white" if kind % len(FILLS) >= DARK else "black" for kind in bodies.swimmers]
         ax.quiver(*tails.T, *away.T, color=inks, zorder=ABOVE + 0.1, **units, **shape)
+
+
+def _traces(ax: Any, bodies: Bodies, above: float) -> None:
+    """The paths of their centres, below them."""
+    from matplotlib.collections import LineCollection
+
+    for colour, width in (("white", TRACE + HALO), ("black", TRACE)):
+        look: Any = {"colors": colour, "linewidths": width, "zorder": above}
+        ax.add_collection(LineCollection(list(bodies.traces), **look), autolim=False)
 
 
 def fill(kind: int) -> str:

@@ -118,6 +118,7 @@ class Bodies:
     outlines: of each, closed lines (n, 2) in the picture; in 3D of its section.
     kinds: of each, from 0.
     arrows: (m, 2, 2) tail and tip along the axis of those that swim; swimmers: their kinds (m,).
+    traces: (m, 2, 2) pieces of the paths of their centres up to this time.
     called: what each kind is called.
     time: of the frame.
     placed: function that returns their parts in space, None in 2D.
@@ -128,6 +129,7 @@ class Bodies:
     kinds: NDArray[np.int64]
     arrows: Array
     swimmers: NDArray[np.int64]
+    traces: Array
     called: tuple[str, ...]
     time: float
     placed: Callable[[], Any] | None = None

@@ -87,9 +87,9 @@ def animate(
     fps: frames shown per second.
     progress: reporter of the frames drawn (none unless said).
     run: its name, for the line below the film and the metadata of the file.
-    choices: `region`, `window`, `axes`, `at` and `colour`, as for `picture`; `average`, how many
-        frames, one after another, each picture of a flow is the mean of: unless said as few as lift
-        the flow above its noise, at most a quarter of them.
+    choices: `region`, `window`, `axes`, `at`, `traces` and `colour`, as for `picture`; `average`,
+        how many frames, one after another, each picture of a flow is the mean of: unless said as
+        few as lift the flow above its noise, at most a quarter of them.
 
     Raises CaseError for an ending or a choice that there is not, RunError where the run kept no
     frames or the file cannot be written. Whatever goes wrong, an old file stays as it was.
@@ -150,7 +150,8 @@ def animate(
     solutes = frames_of(case, trajectory, source.axes)
     if solutes:
         first = replace(first, beads=solutes.at(source.time[means[0][-1]]))
-    moving = bodies_of(case, trajectory, source.axes, section.plane, view.at is not None)
+    cut = section.plane, view.at is not None
+    moving = bodies_of(case, trajectory, source.axes, *cut, view.traces)
     if moving:
         first = replace(first, bodies=moving.at(source.time[means[0][-1]]))
         notes.append(moving.where(kind == "bodies"))

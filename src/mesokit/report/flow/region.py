@@ -20,7 +20,8 @@ class View(NamedTuple):
 
     `colour` says what the colours of spheres mean, `average` how many frames each picture of a film
     is the mean of. `states` are those of sites that are balls in space. `time` is "linear" or
-    "log": how the times of a film, or of profiles, are spaced.
+    "log": how the times of a film, or of profiles, are spaced. `traces` is the time over which the
+    paths of bodies are shown.
     """
 
     region: Ranges | None = None
@@ -31,6 +32,7 @@ class View(NamedTuple):
     average: int | None = None
     states: Sequence[str] | None = None
     time: str | None = None
+    traces: float | None = None
 
 
 CHOICES = View._fields

@@ -22,7 +22,7 @@ SITE_KINDS: dict[str, type[SitePicture]] = {
     "heights": Heights,
     "occupied": Occupied,
 }
-NOT_HERE = ("region", "axes", "at", "colour", "average")
+NOT_HERE = ("region", "axes", "at", "colour", "average", "traces")
 
 
 def own_kind(case: Case) -> str | None:

@@ -50,6 +50,7 @@ def picture(
         and shaded bodies those behind it.
     colour: of disks and spheres: "speed" (unless said), "spin", "neighbours", "psi6" or "kind".
     states: names of those of kind "occupied"; all but the first unless said.
+    traces: time over which the paths of the centres of bodies are shown, none unless said.
     time: "log" for profiles at times whose ratios are alike, else "linear".
 
     Raises CaseError for a kind, region, window, axes or place that there is not, RunError where
@@ -83,7 +84,8 @@ def picture(
     width, clear = smoothing(panels, flows, shown)
     solutes = frames_of(case, trajectory, chosen[0].axes)
     beads = solutes.at(window and window[1]) if solutes else None
-    moving = bodies_of(case, trajectory, chosen[0].axes, section.plane, view.at is not None)
+    cut = section.plane, view.at is not None
+    moving = bodies_of(case, trajectory, chosen[0].axes, *cut, view.traces)
     bodies = moving.at(window and window[1]) if moving else None
     flows = [replace(smooth(flow, width), beads=beads, bodies=bodies) for flow in flows]
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
@@ -99,7 +101,8 @@ def picture(
     ]
     notes += [_few(case, panels, flows), when]
     if moving and bodies:
-        notes += [f"bodies at {at(bodies.time, 4)}", moving.where(kind == "bodies")]
+        paths = f", their paths of {at(view.traces, 4, '')}" if view.traces else ""
+        notes += [f"bodies at {at(bodies.time, 4)}{paths}", moving.where(kind == "bodies")]
     for spheres in filter(None, (flow.spheres for flow in flows)):
         notes += [f"at {at(spheres.time, 4)}", spheres.remark, spheres.note]
     if any(panel.NEEDS == "headings" for panel in panels):

@@ -10,18 +10,26 @@ from mesokit.seam.result import Result
 
 
 def draw_order(result: Result, figure: Any, ax: Any) -> None:
-    """The order in time with its mean, and the mean heading below."""
+    """Orders in time with their means, and the mean heading below."""
     below = None
     if ax is None:
         ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
-    time, mean = result.x["time"], result.extra["mean"]
-    ax.plot(time, result.value, color=COLOURS[0], lw=0.8, label="measured")
-    if np.isfinite(mean):
-        mean_line(ax, mean, result.extra["mean_error"])
+    time = result.x["time"]
+    names = [str(name) for name in result.x.get("order", ("polar",))]
+    columns = result.value.reshape(len(time), len(names)).T
+    means, errors = (np.ravel(result.extra[key]) for key in ("mean", "mean_error"))
+    for k, (name, column) in enumerate(zip(names, columns, strict=True)):
+        several = len(names) > 1
+        look: Any = {"color": COLOURS[2 * k], "ls": LINES[k], "lw": 0.8}
+        ax.plot(time, column, label=name if several else "measured", **look)
+        if np.isfinite(means[k]):
+            label = f"mean of {name}" if several else "mean"
+            mean_line(ax, means[k], errors[k], label, number=2 * k + 1)
     if result.expected is not None and len(time):
         label = f"theory: {result.theory}"
         ax.axhline(result.expected[0], color="black", lw=1.5, label=label)
-    ax.set_ylabel(labelled(r"polar order $\phi$", result.units["value"]))
+    label = "order" if len(names) > 1 else r"polar order $\phi$"
+    ax.set_ylabel(labelled(label, result.units["value"]))
     ax.set_ylim(0, max(1.0, 1.02 * float(np.max(result.value, initial=0.0))))
     legend_above(ax)
     if below is not None:

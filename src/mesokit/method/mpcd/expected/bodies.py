@@ -52,6 +52,18 @@ class Followed(NamedTuple):
         return ((), (2,), (), (0, 1, 2))[turns(self.kind, dimension)]
 
     @property
+    def ball(self) -> bool:
+        """Whether they are disks or spheres."""
+        return bool(self.kind.solid(self.case.box.dimension).ball)
+
+    @property
+    def any_direction(self) -> bool:
+        """Whether, as far as they are concerned, all directions are alike: balls that turn freely
+        about every axis."""
+        held = self.kind.trap is not None and self.kind.trap.angular > 0
+        return self.ball and not held and len(self.turning) == (1, 3)[self.case.box.dimension - 2]
+
+    @property
     def moving(self) -> tuple[int, ...]:
         """Axes along which they move freely."""
         return tuple(k for k, name in enumerate(self.case.box.axes) if name not in self.kind.fixed)

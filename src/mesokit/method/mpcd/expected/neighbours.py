@@ -20,7 +20,7 @@ class NeighboursInFluid:
     """Theory of g(r) in an MPCD fluid: ideal particles, and molecules that do not interact."""
 
     answers = "radial-distribution"
-    size = 1.0  # a cell
+    size = 1.0  # a cell; of bodies the largest diameter
     diameter, value, note = math.nan, math.nan, ""
 
     def __init__(self, case: Case, observable: Any) -> None:
@@ -30,9 +30,12 @@ class NeighboursInFluid:
         except CaseError as error:
             if not observable.kinds:
                 raise
-            known = str(error).partition(": ")[2]  # of the message about one kind
+            known = str(error).partition(": ")[2] or str(error)  # of the message about one kind
             raise CaseError(f"kinds = {show(observable.kinds)}: {known}") from None
         self.first, self.second = groups[0], groups[1] if len(groups) > 1 else []
+        if self.of == "bodies":
+            d = case.box.dimension
+            self.size = max(2.0 * kind.solid(d).radius for kind in case.bodies)
 
     def sampled(self, group: Group) -> bool:
         """True of a group in the fluid, which has many particles."""
@@ -44,5 +47,7 @@ class NeighboursInFluid:
 
     def diffusion(self, group: Group) -> float | None:
         """Rouse diffusion coefficient of a group's molecules, a^2/tau; None if unknown."""
+        if self.of == "bodies":
+            return None
         alone = free_diffusion(self.case, self.of, kind_of(self.case, group))
         return None if alone is None else alone / group.length

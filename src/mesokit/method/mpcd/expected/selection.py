@@ -9,6 +9,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.bodies import every_kind, followed
 from mesokit.method.mpcd.molecule import FLUID, Molecule
 from mesokit.statistics import spread_ids
 
@@ -56,12 +57,17 @@ class Group(NamedTuple):
 
 
 def group_of(case: Case, of: str, kind: int | str | None = 1) -> Group:
-    """The group of an observable of "particles" (of the fluid), "beads", "centres" or "ends".
+    """The group of an observable of "particles" (of the fluid), "bodies", "beads", "centres" or
+    "ends".
 
     Of particles `kind` is the number of a species, None all of them; of others None is the first of
     solutes, or in a fluid of molecules alone these.
     Raises CaseError if there are none.
     """
+    if of == "bodies":
+        chosen = followed(case, "of = 'bodies'", 1 if kind is None else kind)
+        before = sum(group.number for group in case.groups) - sum(b.number for b in case.bodies)
+        return Group(before + chosen.rows.start, 1, chosen.number, None)
     molecule, solutes = case.fluid.molecule, case.solutes
     if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
         if case.fluid.species and kind is not None:
@@ -142,8 +148,11 @@ def default_of(case: Case, of: str | None) -> str:
 def groups_of(case: Case, of: str, kind: int | str | None = None) -> list[Group]:
     """Groups of one kind, or of all kinds. Raises CaseError if there are none.
 
-    Beads of all kinds of solutes are a group for each, particles of all species are one.
+    Beads of all kinds of solutes are a group for each, as bodies are; particles of all species are
+    one.
     """
+    if kind is None and of == "bodies":
+        return [group_of(case, of, one.place + 1) for one in every_kind(case, "of = 'bodies'")]
     if kind is None and of != "particles" and case.solutes is not None:
         kinds = range(1, len(case.solutes.polymers) + 1)
         return [group_of(case, of, number) for number in kinds]
@@ -154,10 +163,10 @@ def independent(case: Case, of: str, groups: list[Group]) -> bool:
     """Whether particles, or molecules as wholes, are independent of all others.
 
     They are not where walls, a driving force or demixing make the density uneven, nor where solutes
-    interact.
+    interact. Bodies have a size.
     """
     solutes = case.solutes
-    if case.walls or setting.driven(case) or setting.gathered(case):
+    if of == "bodies" or case.walls or setting.driven(case) or setting.gathered(case):
         return False
     if solutes is not None and solutes.solvent_pair is not None:
         return False

@@ -2,19 +2,17 @@
 
 import math
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, tag
-from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.bodies import KIND_OF_BODY, followed
-from mesokit.method.mpcd.expected.setting import quiet_axes
+from mesokit.method.mpcd.expected.bodies import KIND_OF_BODY
+from mesokit.method.mpcd.observe.shared.bodies_in_time import BodiesInTime, free_axes
 from mesokit.observe.shared.fitted import fitted_number
-from mesokit.observe.shared.origins import Origins
 from mesokit.seam.estimate import Estimate
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 
 LABELS = {
@@ -47,14 +45,7 @@ class BodyCorrelation(Observable):
 
     def axes(self, case: Case) -> tuple[int, ...]:
         """Axes that count. Raises CaseError without any, or without such bodies."""
-        kind = followed(case, self.quantity, self.kind)
-        if self.of == "velocity":
-            found = tuple(axis for axis in quiet_axes(case) if axis in kind.moving)
-        else:
-            found = kind.turning
-        if not found:
-            moves = "moves along" if self.of == "velocity" else "turns about"
-            raise CaseError(f"of = {self.of!r}: {kind.name} {moves} no axis freely")
+        found = free_axes(case, self, turns=self.of != "velocity")
         return tuple(range(case.box.dimension)) if self.of == "orientation" else found
 
     def check(self, case: Case) -> None:
@@ -67,17 +58,8 @@ def _product(old: Array, new: Array) -> Array:
 
 
 @accumulator_of(BodyCorrelation)
-class BodyCorrelationAccumulator(BlockAccumulator):
+class BodyCorrelationAccumulator(BodiesInTime):
     """Velocities, angular velocities or directions at many origins."""
-
-    memory: ClassVar[tuple[str, ...]] = ("origins",)
-
-    def prepare(self) -> None:
-        observable = self.observable
-        self.of = followed(self.case, observable.quantity, observable.kind)
-        self.axes = list(observable.axes(self.case))
-        max_lag = max(1, observable.max_lag // observable.every)
-        self.origins = Origins(self.of.number, len(self.axes), max_lag)
 
     def observe(self, fluid: Any) -> None:
         bodies, of = fluid.bodies, self.observable.of

@@ -1,19 +1,17 @@
 """Mean square displacement of bodies, and of the angles through which they turn."""
 
 import math
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, tag
-from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.bodies import KIND_OF_BODY, followed
-from mesokit.method.mpcd.expected.setting import quiet_axes
+from mesokit.method.mpcd.expected.bodies import KIND_OF_BODY
+from mesokit.method.mpcd.observe.shared.bodies_in_time import BodiesInTime, free_axes
 from mesokit.observe.mean_square_displacement import late_slope
 from mesokit.observe.shared.fitted import fitted_number
-from mesokit.observe.shared.origins import Origins
-from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
+from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Result, joined
 
 GROWS = "approximate: grows with the lag: no straight line yet, a larger max_lag"
@@ -37,15 +35,7 @@ class BodyDisplacement(Observable):
 
     def axes(self, case: Case) -> tuple[int, ...]:
         """Axes that count. Raises CaseError without any, or without such bodies."""
-        kind = followed(case, self.quantity, self.kind)
-        if self.of == "angles":
-            found = kind.turning
-        else:
-            found = tuple(axis for axis in quiet_axes(case) if axis in kind.moving)
-        if not found:
-            moves = "moves along" if self.of == "places" else "turns about"
-            raise CaseError(f"of = {self.of!r}: {kind.name} {moves} no axis freely")
-        return found
+        return free_axes(case, self, turns=self.of == "angles")
 
     def check(self, case: Case) -> None:
         """Raise CaseError without bodies that move or turn so."""
@@ -58,17 +48,8 @@ def _square_distance(old: Array, new: Array) -> Array:
 
 
 @accumulator_of(BodyDisplacement)
-class BodyDisplacementAccumulator(BlockAccumulator):
+class BodyDisplacementAccumulator(BodiesInTime):
     """Unwrapped places or angles at many origins."""
-
-    memory: ClassVar[tuple[str, ...]] = ("origins",)
-
-    def prepare(self) -> None:
-        observable = self.observable
-        self.of = followed(self.case, observable.quantity, observable.kind)
-        self.axes = list(observable.axes(self.case))
-        max_lag = max(1, observable.max_lag // observable.every)
-        self.origins = Origins(self.of.number, len(self.axes), max_lag)
 
     def observe(self, fluid: Any) -> None:
         bodies = fluid.bodies

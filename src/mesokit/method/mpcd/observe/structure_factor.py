@@ -48,10 +48,12 @@ class StructureFactor(Observable):
     needs_fluid: ClassVar[bool] = False
     drawing = "structure factor"
     units: ClassVar[dict[str, str]] = {"q": "1/a"}
-    of: Literal["beads", "particles", "chains"] | None = param(
-        None, doc=f'{OF}; "chains": each molecule alone'
+    of: Literal["beads", "particles", "bodies", "chains"] | None = param(
+        None, doc=f'{OF}; "bodies": their centres; "chains": each molecule alone'
     )
-    kind: int | str | None = param(None, doc=f"{KIND} (all unless said; of chains the first)")
+    kind: int | str | None = param(
+        None, doc=f"{KIND}; or which of bodies (all unless said; of chains the first)"
+    )
     largest: float | None = param(
         None, doc="longest wave vector (2 pi, or less in a very large box)", unit="1/a", gt=0
     )
@@ -128,7 +130,7 @@ class StructureFactorAccumulator(BlockAccumulator):
         found, step = np.zeros(len(self.waves), complex), max(1, CHUNK // len(self.waves))
         for group in self.groups:
             first, last = group.first, group.first + group.number * group.length
-            if first >= self.case.particles:  # solutes, few enough to read all
+            if first >= self.case.particles:  # solutes and bodies, few enough to read all
                 r = fluid.positions(group.beads().ravel())
                 pieces = (r[None, start : start + step] for start in range(0, len(r), step))
                 of_group = sum(wave_sums(piece, self.waves)[0] for piece in pieces)
