@@ -13,6 +13,7 @@ from pydantic import field_validator
 
 from mesokit.case.component import component, name_of, option, param, show
 from mesokit.case.describe.hints import Either, Many
+from mesokit.case.given.file import FileName
 from mesokit.case.registry import family
 from mesokit.geometry.region import Region
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Direction = Literal["x", "y", "z", "orientation"]
-RANDOM, LATTICE, GIVEN = "random", "lattice", "given"
+RANDOM, LATTICE, GIVEN, RUN, FILE = "random", "lattice", "given", "run", "file"
 
 
 @component
@@ -82,33 +83,66 @@ class Squirming:
             raise ValueError("B1: missing; a squirmer needs B1, B2 or both")
 
 
+Rows = Either[FileName | None, tuple[float, ...]]
+
+
 @component
 class BodyStart:
-    """First places and orientations: drawn without overlap, on a lattice, or given."""
+    """First places and orientations: drawn without overlap, on a lattice, given, or those of an
+    earlier run or of a file.
 
-    rule: Literal["random", "lattice", "given"] = param(
+    Rows are lists, or files .npy or .npz with an array of as many rows as there are bodies."""
+
+    rule: Literal["random", "lattice", "given", "run", "file"] = param(
         "random", doc="'random' draws places without overlap, 'lattice' is a square or cubic one"
     )
-    positions: Many[tuple[float, ...]] | None = param(
-        None, doc="a row for each body, with rule = 'given'", unit="a"
-    )
-    orientations: Many[tuple[float, ...]] | None = param(
+    positions: Rows = param(None, doc="a row for each body, with rule = 'given'", unit="a")
+    orientations: Rows = param(
         None,
         doc="a row for each body: quaternion w, x, y, z, in 2D the angle in degrees (drawn; on a "
         "lattice, and with given positions, those of the box)",
     )
-    velocities: Many[tuple[float, ...]] | None = param(
-        None, doc="a row for each body (drawn unless said)", unit="a/time"
+    velocities: Rows = param(None, doc="a row for each body (drawn unless said)", unit="a/time")
+    spins: Rows = param(
+        None,
+        doc="angular velocities, a row for each body: 3 numbers along the axes of the box, in 2D 1 "
+        "number (drawn unless said)",
+        unit="1/time",
+    )
+    run: FileName | None = param(None, doc="folder of an earlier run: its last state")
+    file: FileName | None = param(None, doc="GSD file: its last frame unless said")
+    frame: int | None = param(None, doc="number of the frame, from 0", ge=0)
+    kind: str | None = param(None, doc="name of these bodies there (the same unless said)")
+    moving: bool = param(
+        True, doc="with the velocities and spins of the run or file; if not, drawn ones"
     )
 
     def __post_init__(self) -> None:
-        if (self.positions is not None) != (self.rule == GIVEN):
-            if self.positions is None:
-                raise ValueError("positions: missing; rule = 'given' needs them")
-            raise ValueError("positions: only with rule = 'given'")
-        for row in self.orientations or ():
+        for key, rule in (("positions", GIVEN), ("run", RUN), ("file", FILE)):
+            there = getattr(self, key) is not None
+            if there != (self.rule == rule):
+                if there:
+                    raise ValueError(f"{key}: only with rule = '{rule}'")
+                what = "them" if key == "positions" else "it"
+                raise ValueError(f"{key}: missing; rule = '{rule}' needs {what}")
+        for key in ("orientations", "velocities", "spins") if self.known_elsewhere else ():
+            if getattr(self, key) is not None:
+                raise ValueError(f"{key}: not with rule = {show(self.rule)}, which has them")
+        if self.frame is not None and self.rule != FILE:
+            raise ValueError(f"frame = {self.frame}: only with rule = 'file'")
+        if self.kind is not None and not self.known_elsewhere:
+            raise ValueError(f"kind = {show(self.kind)}: only with rule = 'run' or 'file'")
+        if not (self.moving or self.known_elsewhere):
+            raise ValueError("moving = false: only with rule = 'run' or 'file'")
+        rows = self.orientations
+        for row in () if rows is None or isinstance(rows, str) else rows:
             if len(row) == 4 and abs(math.fsum(x * x for x in row) - 1.0) > 1e-6:
                 raise ValueError(f"orientations: {show(row)} is no unit quaternion")
+
+    @property
+    def known_elsewhere(self) -> bool:
+        """Whether an earlier run or a file has the bodies."""
+        return self.rule in (RUN, FILE)
 
 
 @family("body", "shape", "mesokit.body")

@@ -137,9 +137,10 @@ def _rows(case: Case, kind: Body) -> Iterator[str]:
         ("positions", d, f"{d} numbers"),
         ("orientations", 1 if d == 2 else 4, angle),
         ("velocities", d, f"{d} numbers"),
+        ("spins", 1 if d == 2 else 3, "1 number, about z" if d == 2 else "3 numbers"),
     ):
         rows = getattr(given, name)
-        if rows is None:
+        if rows is None or isinstance(rows, str):  # files are read by the start
             continue
         if len(rows) != kind.number:
             yield (
@@ -149,7 +150,10 @@ def _rows(case: Case, kind: Body) -> Iterator[str]:
         for i, row in enumerate(rows, start=1):
             if len(row) != width:
                 yield f"start.{name}[#{i}] = {show(row)}: expected {what}"
-    for i, row in enumerate(given.positions or (), start=1):
+    if given.spins is not None and "orientation" in kind.fixed:
+        yield "start.spins: not with fixed = 'orientation', which never turns"
+    rows = () if given.positions is None or isinstance(given.positions, str) else given.positions
+    for i, row in enumerate(rows, start=1):
         for axis, x, length in zip(case.box.axes, row, case.box.size, strict=True):
             if not 0 <= x <= length:
                 yield (
