@@ -161,7 +161,9 @@ def _of_run(case: Case, kind: Body, wanted: str) -> KnownBodies:
         raise CaseError(f"its bodies {show(wanted)} have another shape or size than in this case")
     first = sum(other.kind.number for other in there[:place])
     rows = slice(first, first + kind.number)
-    x, turns, v, spins = (state[f"body_{key}"][rows] for key in ("place", "turn", "velocity", "spin"))
+    x, turns, v, spins = (
+        state[f"body_{key}"][rows] for key in ("place", "turn", "velocity", "spin")
+    )
     return KnownBodies(x[:, :d], turns, v[:, :d], spins)
 
 
@@ -187,7 +189,9 @@ def _of_file(case: Case, kind: Body, wanted: str) -> KnownBodies:
     if d == 2 and turns is not None and np.abs(turns[:, 1:3]).max() > ROUNDING:
         raise CaseError("its particles are turned about other axes than z; expected a 2D box")
     velocities = None if there.velocities is None else there.velocities[rows, :d]
-    return KnownBodies(places, turns, velocities, None if there.spins is None else there.spins[rows])
+    return KnownBodies(
+        places, turns, velocities, None if there.spins is None else there.spins[rows]
+    )
 
 
 def _rows_of_kind(there: Snapshot, number: int, wanted: str) -> NDArray[np.int64]:

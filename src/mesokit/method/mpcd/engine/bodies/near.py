@@ -45,7 +45,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
 from mesokit.method.mpcd.engine.embedded.near import note
-from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
+from mesokit.method.mpcd.engine.embedded.state import STEP, TOO_MANY
 from mesokit.method.mpcd.streaming import halfway, vector
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
@@ -115,8 +115,25 @@ def note_paths(worker, now, physics, bodies):
         bodies.rows[i, STRIDE] = 2.0 * path + SPARE + slide_of(now.box) * physics.timestep
         farthest = max(farthest, bodies.rows[i, PATH] + bodies.rows[i, STRIDE])
         bodies.rows[i, PATH] += path
+        if bodies.rows[i, PATH] > PARTNERS_HOLD and of_kind(bodies, i, state.DEPTH) > 0.0:
+            note_fast(bodies.faults[worker.thread], now.counter.step, i, path / physics.timestep)
     farthest = farthest_of_all(worker, bodies, farthest)
     bodies.work[worker.thread, ALLOWANCE] = farthest
+
+
+@seldom
+def note_fast(faults, step, i, speed):
+    """Note a body that goes farther than the list of its partners holds: it may miss a gap."""
+    if faults[STEP] == 0:
+        faults[state.SPEED] = np.int64(min(speed, 1e9) / state.MILLIONTH)
+    note(faults, step, state.TOO_FAST, i + 1)
+
+
+@seldom
+def lengthen_path(bodies, i, now, time):
+    """Add what hits have added to the path of body i in this step."""
+    planned = 0.5 * (bodies.rows[i, STRIDE] - SPARE - slide_of(now.box) * time)
+    bodies.rows[i, PATH] += max(path_of_surface(bodies, i, time) - planned, 0.0)
 
 
 @by_type

@@ -54,9 +54,10 @@ SUMS = 27  # whole numbers of a body that threads add up
 GAS_PLACE, GAS_VELOCITY, GAS_KEPT, GAS_ARM, GAS_SPEED = 0, 3, 6, 9, 12
 GAS_COLUMNS = 13
 # Counters of a thread.
-COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT = 0, 1, 2, 3, 4
+COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT, STILL_HITTING = 0, 1, 2, 3, 4, 5
 COUNTERS = 8
-CAUGHT = 4  # what a fault may be, beside those of `embedded.state`
+CAUGHT, TOO_FAST = 4, 5  # what a fault may be, beside those of `embedded.state`
+SPEED, MILLIONTH = 3, 1e-6  # of a fault: where the speed of a body is, and in what
 WORK = 256  # floats of scratch memory of a thread
 
 
