@@ -282,8 +282,8 @@ def test_a_body_that_goes_too_far_in_a_step_stops_the_run():
     with pytest.raises(RunError) as error:
         Simulation(case, threads=1).run(1)
     assert str(error.value) == (
-        "step 1: body 2 of them goes 0.707 cells in a timestep, at a speed of 7.071; expected at most "
-        "0.35, or gaps may be missed: a shorter fluid.timestep or weaker forces"
+        "step 1: body 2 of them goes 0.707 cells in a timestep, at a speed of 7.071; expected at "
+        "most 0.35, or gaps may be missed: a shorter fluid.timestep or weaker forces"
     )
 
 

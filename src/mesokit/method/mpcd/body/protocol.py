@@ -83,6 +83,31 @@ class Squirming:
             raise ValueError("B1: missing; a squirmer needs B1, B2 or both")
 
 
+@component
+class Counter:
+    """Where the fluid nearby takes the opposite of the constant force and torque on a body, so that
+    the momentum of both stays: the force in a ball, the torque in a shell around the body."""
+
+    at: Many[float] | None = param(
+        None, doc="middle of the ball, in the body's frame; the counter-force acts there", unit="a"
+    )
+    radius: float = param(1.0, doc="of this ball", unit="a", ge=0.5, le=100)
+    shell: float = param(
+        0.0, doc="thickness of the shell that takes the counter-torque; 0 for none", unit="a", ge=0
+    )
+
+    def __post_init__(self) -> None:
+        if self.at is None and self.shell == 0:
+            raise ValueError("at: missing; a counter needs at, shell or both")
+
+    def volume(self, solid: Solid, dimension: int) -> float:
+        """Of ball and shell, at most."""
+        unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
+        ball = 0.0 if self.at is None else unit * self.radius**dimension
+        outer = unit * (solid.radius + self.shell) ** dimension - solid.volume
+        return ball + (outer if self.shell else 0.0)
+
+
 Rows = Either[FileName | None, tuple[float, ...]]
 
 
@@ -200,6 +225,11 @@ class Body(ABC):
         doc="accelerate all fluid and bodies uniformly so that their momentum stays",
         kw_only=True,
     )
+    counter: Counter | None = option(
+        default=None,
+        doc="where the fluid nearby takes the opposite of force and torque (a swimmer)",
+        kw_only=True,
+    )
     fixed: Many[Direction] = option(
         default=(),
         doc="what does not move: any of 'x', 'y', 'z' (its place), 'orientation'",
@@ -233,10 +263,26 @@ class Body(ABC):
             raise ValueError(f"hinge = {show(self.hinge)}: expected a vector other than 0")
         if self.hinge is not None and "orientation" in self.fixed:
             raise ValueError("hinge: not with fixed = 'orientation', which never turns")
+        if self.counter is not None:
+            self._check_counter(self.counter)
         if self.swim is not None and not self.squirms:
             raise ValueError("swim: only of a sphere, disk, spheroid or ellipse")
         if self.swim is not None and self.surface == "slip":
             raise ValueError("swim: not with surface = 'slip', which drags no fluid along")
+
+    def _check_counter(self, counter: Counter) -> None:
+        if self.counter_force:
+            raise ValueError("counter: not with counter_force = true; give one of them")
+        if counter.at is not None and not (self.force is not None and any(self.force)):
+            raise ValueError(f"counter.at = {show(counter.at)}: needs a force, whose opposite acts")
+        if counter.at is not None and self.frame != "body":
+            raise ValueError(
+                f"counter.at = {show(counter.at)}: needs frame = 'body', as the place turns with it"
+            )
+        if counter.shell and not np.any(self.torque or 0.0):
+            raise ValueError(
+                f"counter.shell = {show(counter.shell)}: needs a torque, whose opposite acts there"
+            )
 
     @abstractmethod
     def region(self) -> Region:
@@ -250,6 +296,11 @@ class Body(ABC):
     def solid(self, dimension: int) -> Solid:
         """Volume, inertia and parts about the centre of mass, in 2D or 3D."""
         return _solid(self.region(), dimension == 2)
+
+    @property
+    def balanced(self) -> bool:
+        """Whether something takes the opposite of its force."""
+        return self.counter_force or (self.counter is not None and self.counter.at is not None)
 
     def mass_in(self, dimension: int, fluid_density: float) -> float:
         """Its mass, in a fluid of this mass per volume."""

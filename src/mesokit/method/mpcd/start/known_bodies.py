@@ -1,7 +1,7 @@
 """Bodies whose places are known: given in rows or in files, or those of an earlier run."""
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
