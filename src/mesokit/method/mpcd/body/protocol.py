@@ -84,7 +84,7 @@ class Squirming:
 
 
 @component
-class Counter:
+class CounterForce:
     """Where the fluid nearby takes the opposite of the constant force and torque on a body, so that
     the momentum of both stays: the force in a ball, the torque in a shell around the body."""
 
@@ -225,7 +225,7 @@ class Body(ABC):
         doc="accelerate all fluid and bodies uniformly so that their momentum stays",
         kw_only=True,
     )
-    counter: Counter | None = option(
+    counter: CounterForce | None = option(
         default=None,
         doc="where the fluid nearby takes the opposite of force and torque (a swimmer)",
         kw_only=True,
@@ -270,7 +270,7 @@ class Body(ABC):
         if self.swim is not None and self.surface == "slip":
             raise ValueError("swim: not with surface = 'slip', which drags no fluid along")
 
-    def _check_counter(self, counter: Counter) -> None:
+    def _check_counter(self, counter: CounterForce) -> None:
         if self.counter_force:
             raise ValueError("counter: not with counter_force = true; give one of them")
         if counter.at is not None and not (self.force is not None and any(self.force)):

@@ -1,6 +1,6 @@
 """Forces and torques on bodies that the fluid nearby takes back: dumbbell swimmers and rotors.
 
-The counter-force acts on the particles in a ball at a place in the body's frame, in equal parts. The
+The counter-force acts in equal parts on the particles in a ball at a place of the body. The
 counter-torque turns those in a shell around the body rigidly about the mean of their places, so
 that it adds no momentum. Impulses are whole numbers of quanta, and the body gets the opposite of
 their sum and of their moment about its centre: momentum and angular momentum stay. In a step in
