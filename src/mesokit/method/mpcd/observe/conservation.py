@@ -12,7 +12,6 @@ from mesokit.case.box import AXES
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.columns import freedoms, holds, in_random_solvent, temperature
 from mesokit.method.mpcd.expected import setting
-from mesokit.seam.engine import RunningFluid
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable, State, accumulator_of
 from mesokit.seam.result import NOT_STEADY, Array, Comparison, Result
@@ -68,7 +67,7 @@ class ConservationAccumulator(BlockAccumulator):
         self.left = np.zeros(len(LEFT))  # particles that bodies left over, in all samples
         self.pooled = 1  # runs
 
-    def observe(self, fluid: RunningFluid) -> None:
+    def observe(self, fluid: Any) -> None:
         number, momentum, energy = fluid.totals()
         if self.case.bodies:
             found = fluid.bodies.counts()
