@@ -134,6 +134,7 @@ from mesokit.method.mpcd.body.ellipse import EllipseBody as EllipseBody
 from mesokit.method.mpcd.body.protocol import Body as Body
 from mesokit.method.mpcd.body.protocol import BodyStart as BodyStart
 from mesokit.method.mpcd.body.protocol import BodyTrap as BodyTrap
+from mesokit.method.mpcd.body.protocol import CounterForce as CounterForce
 from mesokit.method.mpcd.body.protocol import GapPotential as GapPotential
 from mesokit.method.mpcd.body.protocol import Squirming as Squirming
 from mesokit.method.mpcd.body.rectangle import RectangleBody as RectangleBody

@@ -64,6 +64,8 @@ ROWS = {
     "method/__init__.py": (),
     "method/mpcd/": MPCD,
     "method/mpcd/start/": START,
+    "method/mpcd/start/earlier.py": (*START, "io"),
+    "method/mpcd/start/known_bodies.py": (*START, "io"),
     "method/mpcd/start/first_state.py": (*MPCD, "io", "processes"),
     "method/mpcd/method.py": (*MPCD, "io", "observe", "processes"),
     "method/mpcd/engine/": ENGINE,

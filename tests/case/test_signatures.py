@@ -34,7 +34,11 @@ def test_signatures_can_be_read() -> None:
     )
 
 
-NEED_ONE = {"BodyTrap", "Squirming"}  # of several parameters, so that defaults alone are refused
+NEED_ONE = {
+    "BodyTrap",
+    "CounterForce",
+    "Squirming",
+}  # of several parameters, so that defaults alone are refused
 
 
 def test_defaults_are_those_that_hold() -> None:

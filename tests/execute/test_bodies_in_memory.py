@@ -7,6 +7,7 @@ from scipy import linalg
 from mesokit.kernels.kernel import kernel
 from mesokit.method.mpcd.body.inertia import _grid, _inside, solid_of
 from mesokit.method.mpcd.engine.bodies import linear, state
+from mesokit.method.mpcd.engine.bodies.dipoles import turn_of_shell
 from mesokit.method.mpcd.engine.bodies.forces import nearest_places
 from mesokit.method.mpcd.engine.bodies.hits import add_hit
 from mesokit.method.mpcd.engine.bodies.linear import solve_noise, solve_reflection
@@ -125,6 +126,23 @@ def test_solutions_are_those_of_linear_algebra(spatial, noise):
     if not noise:  # energy: sum (v - B dU) . ... = 0 for v' = v - 2 (g - B dU / 2)
         change = expected @ whole @ expected / 2
         assert change == pytest.approx(p_sum @ expected - expected @ g_sum @ expected / 2, rel=1e-9)
+
+
+@kernel
+def turn_shell(sums, torque, zero):
+    return turn_of_shell(sums, torque, zero)
+
+
+def test_the_turn_of_a_shell_takes_a_torque_and_no_momentum():
+    random = np.random.default_rng(7)
+    s, m, torque = random.normal(size=(30, 3)) + [1, 0, 2], 2.0**30, np.array([2.0, -1.0, 0.5])
+    x, y, z = s.T
+    each = [x**0, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z]
+    sums = np.array([np.rint(m * one.sum()) for one in each], np.int64)
+    middle, w = turn_shell(sums, tuple(m * torque), ZERO)
+    impulses = np.cross(w, s - np.array(middle))
+    np.testing.assert_allclose(impulses.sum(axis=0), 0, atol=1e-6)
+    np.testing.assert_allclose(np.cross(s, impulses).sum(axis=0), torque, atol=1e-6)
 
 
 @kernel

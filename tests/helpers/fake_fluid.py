@@ -68,7 +68,7 @@ class FakeBodies:
         return vectors
 
     def counts(self):
-        return {"second hits": 1, "put back": 0}
+        return {"second hits": 1, "put back": 0, "still hitting": 0}
 
     def motion(self):
         return np.append(np.zeros(self.dimension), 2.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesokit import MaxwellBoltzmann, Plates, SRDPlusA
-from mesokit.method.mpcd.body.protocol import Squirming
+from mesokit.method.mpcd.body.protocol import CounterForce, Squirming
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
 from tests.helpers.bodies import ROOM, SHAPES, SIZES, SOME, body
@@ -90,12 +90,19 @@ def test_the_pressure_around_bodies_is_that_of_the_free_fluid(name, virtual):
     assert kinetic < 8.8 and collisional > 1.2 and found.error < 0.1
 
 
+# A dumbbell swimmer, which pushes the fluid behind it, and a rotor.
+DRIVEN = (
+    body("disk", 2, force=(60, 0), frame="body", counter=CounterForce(at=(-4, 0))),
+    body("rectangle", 2, torque=200, counter=CounterForce(shell=1.5)),
+)
 # Three of them are compiled for other tests too
 SHEARED = {"collision": SRDPlusA(angle=90), "thermostat": MaxwellBoltzmann()}
 KINDS = {
     "2D": {"size": ROOM[2], "bodies": SOME[2]},
     "3D": {"size": ROOM[3], "bodies": SOME[3]},
-    "sheared": {"size": ROOM[2], "bodies": SOME[2], "shear_rate": 0.05, **SHEARED},
+    "sheared": {
+        "size": ROOM[2], "bodies": (*DRIVEN, body("union", 2)), "shear_rate": 0.05, **SHEARED,
+    },
     "slit": {
         "size": ROOM[2], "bodies": SOME[2], "walls": [Plates(axis="y")],
         "thermostat": MaxwellBoltzmann(),
@@ -158,3 +165,23 @@ def test_a_body_in_shear_turns_with_the_fluid():
     turning = mean(blocks(np.diff(angles) / (40 * 0.05)))
     assert turning.agrees(-0.5 * rate, systematic=0.1), turning
     assert turning.error < 0.15 * 0.5 * rate
+
+
+def test_the_fluid_nearby_takes_the_opposite_of_forces_and_torques():
+    """Momentum stays. The swimmer goes ahead, the rotor turns, and the mean force is 0."""
+    # a box that hardly slides is of the same compiled kind as "sheared"
+    fluid = make_fluid(
+        ROOM[2], bodies=DRIVEN, thermostat=MaxwellBoltzmann(), timestep=0.2, shear_rate=1e-13
+    )
+    momentum = fluid.totals()[1]
+    fluid.advance(100)
+    speeds, forces, begun = [], [], fluid.bodies.angles[1, 2]
+    for _ in range(400):
+        fluid.advance(1)
+        speeds.append((fluid.bodies.velocities * fluid.bodies.headings)[0].sum())
+        forces.append(fluid.bodies.forces[0])
+    assert abs(fluid.totals()[1] - momentum).max() < 1e-11 * fluid.n
+    assert mean(blocks(np.array(speeds))).value > 0.2
+    assert fluid.bodies.angles[1, 2] - begun > 4
+    # what is left is the change of its momentum
+    assert abs(np.mean(forces, axis=0)).max() < 2 * fluid.bodies.masses[0] / (400 * 0.2)

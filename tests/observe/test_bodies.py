@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit import BodyCorrelation, BodyDisplacement, BodyDrift, BodyMotion, BodyTracks, CaseError
+from mesokit import (
+    BodyCorrelation,
+    BodyDisplacement,
+    BodyDrift,
+    BodyMotion,
+    BodyTracks,
+    CaseError,
+    RunError,
+)
 from mesokit.method.mpcd.body.disk import DiskBody
+from mesokit.method.mpcd.body.protocol import BodyStart
 from mesokit.method.mpcd.expected.bodies import every_kind, followed
 from mesokit.report.figures import plot
 from mesokit.run.simulation import Simulation
@@ -40,7 +49,7 @@ class Scripted:
         return vectors
 
     def counts(self):
-        return {"second hits": 3, "put back": self.step % 2}
+        return {"second hits": 3, "put back": self.step % 2, "still hitting": 0}
 
     def totals(self):
         return 104, np.zeros(2), 0.5 * (2 * 100 + 7)
@@ -248,6 +257,34 @@ def test_momentum_of_fluid_and_bodies_is_kept(at_rest):
     warm = kept.value[:, kept.x["component"].tolist().index("temperature")]
     assert warm.mean() == pytest.approx(1, abs=0.1)
     assert kept.value[0, 0] == kept.expected[0, 0] == 874 + 3
+    assert kept["particles put back in a step"].measured < 0.02
+    assert kept["particles still hitting in a step"].measured == 0
+
+
+def test_a_particle_that_still_hits_after_all_rounds_is_counted():
+    """Between two disks that stand 0.3 cells apart, at 60 cells in a unit of time."""
+    apart = BodyStart(rule="given", positions=[[5, 7], [8.3, 7], [6.5, 1]])
+    held = DiskBody(radius=1.5, number=3, fixed=("x", "y", "orientation"), start=apart)
+    case = moving_disks(bodies=(held,), observe=[mesokit.Conservation(every=1)], steps=1)
+    fluid = Simulation(case, threads=1).engine
+    places, velocities = fluid.positions(), 0.0 * fluid.velocities()
+    nearest = np.argmin(((places - [6.65, 7]) ** 2).sum(axis=1))
+    places[nearest], velocities[nearest] = [6.65, 7], [60, 0]
+    one = Simulation(case, threads=1, positions=places, velocities=velocities)
+    one.run()
+    counted = one.results["conservation"]["particles still hitting in a step"]
+    assert counted.measured == pytest.approx(0.5)  # in one of two samples
+
+
+def test_a_body_that_goes_too_far_in_a_step_stops_the_run():
+    fast = BodyStart(rule="lattice", velocities=[[0, 0], [1, -7], [0, 0]])
+    case = moving_disks(bodies=(DiskBody(radius=1.5, number=3, mass=1e4, name="them", start=fast),))
+    with pytest.raises(RunError) as error:
+        Simulation(case, threads=1).run(1)
+    assert str(error.value) == (
+        "step 1: body 2 of them goes 0.707 cells in a timestep, at a speed of 7.071; expected at "
+        "most 0.35, or gaps may be missed: a shorter fluid.timestep or weaker forces"
+    )
 
 
 FORCED = {"radius": 1.5, "number": 3, "force": (5.0, 0.0)}

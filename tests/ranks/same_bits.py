@@ -14,6 +14,7 @@ from mesokit import (
     WCA,
     Box,
     Case,
+    CounterForce,
     Disk,
     DiskBody,
     Fluid,
@@ -70,8 +71,15 @@ CASES |= {
         fluid=Fluid(density=5, force=Uniform([0.01, 0]), thermostat=HELD),
         walls=[Plates("y"), Disk(centre=[10.3, 9.7], radius=3)],
         bodies=[
-            DiskBody(radius=2, number=3, swim=Squirming(B1=0.1)),
-            RectangleBody(size=[5, 3], density=10),
+            DiskBody(
+                radius=2,
+                number=3,
+                swim=Squirming(B1=0.1),
+                force=[20, 0],
+                frame="body",
+                counter=CounterForce(at=[-4, 0]),
+            ),
+            RectangleBody(size=[5, 3], density=10, torque=50, counter=CounterForce(shell=1.5)),
         ],
     ),
     "bodies in shear": Case(

@@ -24,14 +24,20 @@ def require() -> ModuleType:
     return package("gsd.hoomd", "GSD files")
 
 
-def read(path: str) -> Snapshot:
-    """The particles of the last frame. Raises CaseError for a file that cannot be read."""
+def read(path: str, frame: int | None = None) -> Snapshot:
+    """The particles of a frame, from 0, the last unless said.
+
+    Raises CaseError for a file that cannot be read.
+    """
     hoomd = require()
     try:
         with hoomd.open(path, mode="r") as file:
             if not len(file):
                 raise CaseError("it has no frame")
-            return _snapshot(file[len(file) - 1], file.file, len(file) - 1)
+            index = len(file) - 1 if frame is None else frame
+            if index >= len(file):
+                raise CaseError(f"frame = {index}: it has {len(file)}, from 0 on")
+            return _snapshot(file[index], file.file, index)
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise CaseError(f"cannot be read as a GSD file: {reason}") from None
@@ -66,23 +72,23 @@ def _snapshot(frame: Any, file: Any, index: int) -> Snapshot:
         tilts=box[3:],
         diameters=np.asarray(particles.diameter, float) if stored("diameter") else None,
         spins=spins,
+        orientations=np.asarray(particles.orientation, float) if stored("orientation") else None,
+        kinds=np.array(particles.types, dtype=object)[np.asarray(particles.typeid, np.int64)],
     )
 
 
 def _spins(particles: Any) -> Any:
     """Angular velocities (n, 3) from quaternions p = 2 q (0, L), L in the frame of each particle.
 
-    About an axis with no moment of inertia there is none. Raises CaseError for particles that are
-    not spheres, whose axes turn with them.
+    About an axis with no moment of inertia there is none.
     """
     inertia = np.asarray(particles.moment_inertia, float)
-    if (np.ptp(inertia, axis=1)[(inertia > 0).all(axis=1)] > 1e-5 * inertia.max()).any():
-        raise CaseError("its particles have three moments of inertia; expected those of spheres")
     p = np.asarray(particles.angmom, float)
     s, v = np.split(np.asarray(particles.orientation, float), [1], axis=1)
-    # L in space is p conj(q) / 2, as p = 2 q (0, L_body) and L = q L_body conj(q)
-    momentum = 0.5 * (s * p[:, 1:] - p[:, :1] * v - np.cross(p[:, 1:], v))
-    return np.divide(momentum, inertia, out=np.zeros_like(momentum), where=inertia > 0)
+    momentum = 0.5 * (s * p[:, 1:] - p[:, :1] * v - np.cross(v, p[:, 1:]))
+    own = np.divide(momentum, inertia, out=np.zeros_like(momentum), where=inertia > 0)
+    twist = 2.0 * np.cross(v, own)
+    return own + s * twist + np.cross(v, twist)
 
 
 def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:

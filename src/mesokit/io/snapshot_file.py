@@ -10,7 +10,8 @@ from mesokit.errors import CaseError
 def read_snapshot(path: str, scale: float | None = None) -> Snapshot:
     """The particles of a GSD or LAMMPS data file, by its ending, with lengths times `scale`.
 
-    Raises CaseError for another ending, and for a file that cannot be read.
+    Of GSD files it is the last frame. Raises CaseError for another ending, and for a file that
+    cannot be read.
     """
     ending = Path(path).suffix
     if ending == ".gsd":

@@ -16,8 +16,9 @@ class Snapshot(NamedTuple):
     """Particles of a file, in its own order, in three dimensions.
 
     `positions` (n, 3); `velocities` (n, 3), `images` (n, 3), `masses` (n,), `diameters` (n,) and
-    `spins` (n, 3), angular velocities, or None where the file has none; `bonds` (b, 2), rows of the
-    particles that are linked; `numbers` (n,), what the file calls them; `low` and `lengths` (3,) of
+    `spins` (n, 3), angular velocities, or None where the file has none, likewise `orientations`
+    (n, 4), quaternions, and `kinds` (n,), names; `bonds` (b, 2), rows of the particles that are
+    linked; `numbers` (n,), what the file calls them; `low` and `lengths` (3,) of
     the box, `tilts` (3,) of its edges.
     """
 
@@ -32,6 +33,8 @@ class Snapshot(NamedTuple):
     tilts: Floats
     diameters: Floats | None = None
     spins: Floats | None = None
+    orientations: Floats | None = None
+    kinds: NDArray[Any] | None = None
 
     def scaled(self, scale: float) -> Snapshot:
         """The same with all lengths times a factor; times and masses stay."""

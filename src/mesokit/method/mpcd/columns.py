@@ -71,7 +71,7 @@ def holds(case: Case) -> bool:
     return any(
         {*kind.fixed} - {"orientation"}
         or (kind.trap is not None and kind.trap.k > 0)
-        or (kind.force is not None and any(kind.force) and not kind.counter_force)
+        or (kind.force is not None and any(kind.force) and not kind.balanced)
         for kind in case.bodies
     )
 

@@ -114,14 +114,15 @@ def _start(engine: Any, state: FirstState) -> None:
 
 
 def _starts(case: Case) -> dict[str, Path]:
-    starts = {"fluid.start": case.fluid.start}
+    starts: dict[str, Any] = {"fluid.start": case.fluid.start}
     if case.solutes is not None:
         starts["solutes.start"] = case.solutes.start
+    starts |= {f"bodies[#{n}].start": kind.start for n, kind in enumerate(case.bodies, start=1)}
     return {
         f"{where}.{key}": Path(name)
         for where, start in starts.items()
-        for key, name in dataclasses.asdict(start).items()
-        if name is not None
+        for key in ("positions", "orientations", "velocities", "spins", "run", "file")
+        if isinstance(name := getattr(start, key, None), str)
     }
 
 

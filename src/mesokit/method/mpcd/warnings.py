@@ -226,7 +226,7 @@ def _pushed_bodies(case: Case) -> Iterator[str]:
     """A net force on bodies that nothing takes."""
     total = np.zeros(case.box.dimension)
     for kind in case.bodies:
-        if kind.force is None or kind.frame == "body" or kind.counter_force or kind.trap:
+        if kind.force is None or kind.frame == "body" or kind.balanced or kind.trap:
             continue
         free = [axis not in kind.fixed for axis in case.box.axes]
         total += kind.number * np.array(kind.force) * free

@@ -13,6 +13,7 @@ from pydantic import field_validator
 
 from mesokit.case.component import component, name_of, option, param, show
 from mesokit.case.describe.hints import Either, Many
+from mesokit.case.given.file import FileName
 from mesokit.case.registry import family
 from mesokit.geometry.region import Region
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Direction = Literal["x", "y", "z", "orientation"]
-RANDOM, LATTICE, GIVEN = "random", "lattice", "given"
+RANDOM, LATTICE, GIVEN, RUN, FILE = "random", "lattice", "given", "run", "file"
 
 
 @component
@@ -83,32 +84,90 @@ class Squirming:
 
 
 @component
-class BodyStart:
-    """First places and orientations: drawn without overlap, on a lattice, or given."""
+class CounterForce:
+    """Where the fluid nearby takes the opposite of the constant force and torque on a body, so that
+    the momentum of both stays: the force in a ball, the torque in a shell around the body."""
 
-    rule: Literal["random", "lattice", "given"] = param(
+    at: Many[float] | None = param(
+        None, doc="middle of the ball, in the body's frame; the counter-force acts there", unit="a"
+    )
+    radius: float = param(1.0, doc="of this ball", unit="a", ge=0.5, le=100)
+    shell: float = param(
+        0.0, doc="thickness of the shell that takes the counter-torque; 0 for none", unit="a", ge=0
+    )
+
+    def __post_init__(self) -> None:
+        if self.at is None and self.shell == 0:
+            raise ValueError("at: missing; a counter needs at, shell or both")
+
+    def volume(self, solid: Solid, dimension: int) -> float:
+        """Of ball and shell, at most."""
+        unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
+        ball = 0.0 if self.at is None else unit * self.radius**dimension
+        outer = unit * (solid.radius + self.shell) ** dimension - solid.volume
+        return ball + (outer if self.shell else 0.0)
+
+
+Rows = Either[FileName | None, tuple[float, ...]]
+
+
+@component
+class BodyStart:
+    """First places and orientations: drawn without overlap, on a lattice, given, or those of an
+    earlier run or of a file.
+
+    Rows are lists, or files .npy or .npz with an array of as many rows as there are bodies."""
+
+    rule: Literal["random", "lattice", "given", "run", "file"] = param(
         "random", doc="'random' draws places without overlap, 'lattice' is a square or cubic one"
     )
-    positions: Many[tuple[float, ...]] | None = param(
-        None, doc="a row for each body, with rule = 'given'", unit="a"
-    )
-    orientations: Many[tuple[float, ...]] | None = param(
+    positions: Rows = param(None, doc="a row for each body, with rule = 'given'", unit="a")
+    orientations: Rows = param(
         None,
         doc="a row for each body: quaternion w, x, y, z, in 2D the angle in degrees (drawn; on a "
         "lattice, and with given positions, those of the box)",
     )
-    velocities: Many[tuple[float, ...]] | None = param(
-        None, doc="a row for each body (drawn unless said)", unit="a/time"
+    velocities: Rows = param(None, doc="a row for each body (drawn unless said)", unit="a/time")
+    spins: Rows = param(
+        None,
+        doc="angular velocities, a row for each body: 3 numbers along the axes of the box, in 2D 1 "
+        "number (drawn unless said)",
+        unit="1/time",
+    )
+    run: FileName | None = param(None, doc="folder of an earlier run: its last state")
+    file: FileName | None = param(None, doc="GSD file: its last frame unless said")
+    frame: int | None = param(None, doc="number of the frame, from 0", ge=0)
+    kind: str | None = param(None, doc="name of these bodies there (the same unless said)")
+    moving: bool = param(
+        True, doc="with the velocities and spins of the run or file; if not, drawn ones"
     )
 
     def __post_init__(self) -> None:
-        if (self.positions is not None) != (self.rule == GIVEN):
-            if self.positions is None:
-                raise ValueError("positions: missing; rule = 'given' needs them")
-            raise ValueError("positions: only with rule = 'given'")
-        for row in self.orientations or ():
+        for key, rule in (("positions", GIVEN), ("run", RUN), ("file", FILE)):
+            there = getattr(self, key) is not None
+            if there != (self.rule == rule):
+                if there:
+                    raise ValueError(f"{key}: only with rule = '{rule}'")
+                what = "them" if key == "positions" else "it"
+                raise ValueError(f"{key}: missing; rule = '{rule}' needs {what}")
+        for key in ("orientations", "velocities", "spins") if self.known_elsewhere else ():
+            if getattr(self, key) is not None:
+                raise ValueError(f"{key}: not with rule = {show(self.rule)}, which has them")
+        if self.frame is not None and self.rule != FILE:
+            raise ValueError(f"frame = {self.frame}: only with rule = 'file'")
+        if self.kind is not None and not self.known_elsewhere:
+            raise ValueError(f"kind = {show(self.kind)}: only with rule = 'run' or 'file'")
+        if not (self.moving or self.known_elsewhere):
+            raise ValueError("moving = false: only with rule = 'run' or 'file'")
+        rows = self.orientations
+        for row in () if rows is None or isinstance(rows, str) else rows:
             if len(row) == 4 and abs(math.fsum(x * x for x in row) - 1.0) > 1e-6:
                 raise ValueError(f"orientations: {show(row)} is no unit quaternion")
+
+    @property
+    def known_elsewhere(self) -> bool:
+        """Whether an earlier run or a file has the bodies."""
+        return self.rule in (RUN, FILE)
 
 
 @family("body", "shape", "mesokit.body")
@@ -166,6 +225,11 @@ class Body(ABC):
         doc="accelerate all fluid and bodies uniformly so that their momentum stays",
         kw_only=True,
     )
+    counter: CounterForce | None = option(
+        default=None,
+        doc="where the fluid nearby takes the opposite of force and torque (a swimmer)",
+        kw_only=True,
+    )
     fixed: Many[Direction] = option(
         default=(),
         doc="what does not move: any of 'x', 'y', 'z' (its place), 'orientation'",
@@ -199,10 +263,26 @@ class Body(ABC):
             raise ValueError(f"hinge = {show(self.hinge)}: expected a vector other than 0")
         if self.hinge is not None and "orientation" in self.fixed:
             raise ValueError("hinge: not with fixed = 'orientation', which never turns")
+        if self.counter is not None:
+            self._check_counter(self.counter)
         if self.swim is not None and not self.squirms:
             raise ValueError("swim: only of a sphere, disk, spheroid or ellipse")
         if self.swim is not None and self.surface == "slip":
             raise ValueError("swim: not with surface = 'slip', which drags no fluid along")
+
+    def _check_counter(self, counter: CounterForce) -> None:
+        if self.counter_force:
+            raise ValueError("counter: not with counter_force = true; give one of them")
+        if counter.at is not None and not (self.force is not None and any(self.force)):
+            raise ValueError(f"counter.at = {show(counter.at)}: needs a force, whose opposite acts")
+        if counter.at is not None and self.frame != "body":
+            raise ValueError(
+                f"counter.at = {show(counter.at)}: needs frame = 'body', as the place turns with it"
+            )
+        if counter.shell and not np.any(self.torque or 0.0):
+            raise ValueError(
+                f"counter.shell = {show(counter.shell)}: needs a torque, whose opposite acts there"
+            )
 
     @abstractmethod
     def region(self) -> Region:
@@ -216,6 +296,11 @@ class Body(ABC):
     def solid(self, dimension: int) -> Solid:
         """Volume, inertia and parts about the centre of mass, in 2D or 3D."""
         return _solid(self.region(), dimension == 2)
+
+    @property
+    def balanced(self) -> bool:
+        """Whether something takes the opposite of its force."""
+        return self.counter_force or (self.counter is not None and self.counter.at is not None)
 
     def mass_in(self, dimension: int, fluid_density: float) -> float:
         """Its mass, in a fluid of this mass per volume."""

@@ -14,6 +14,7 @@ from mesokit.method.mpcd.body.union import UnionBody, moves
 MOST_BODIES = 2**24
 MOST_FILLED = 0.9  # of the volume that walls leave
 LEAST_MASS = 10.0  # particles of the fluid
+LEAST_NEARBY = 5.0  # particles that take a counter-force
 ROOM = 4.0  # cells from a body to its own image
 SIZES = ("radius", "half_length", "length", "size", "parts")  # keys that say how large one is
 
@@ -31,6 +32,7 @@ def bodies(case: Case) -> Iterator[str]:
         yield from (f"{key}.{problem}" for problem in _rows(case, kind))
         yield from (f"{key}.{problem}" for problem in _size(case, kind))
         yield from (f"{key}.{problem}" for problem in _counter_force(case, kind))
+        yield from (f"{key}.{problem}" for problem in _counter(case, kind))
         if kind.swim is not None and kind.swim.tumble_rate and not kind.tumbles:
             yield (
                 f"{key}.swim.tumble_rate = {show(kind.swim.tumble_rate)}: only of a sphere or a "
@@ -137,9 +139,10 @@ def _rows(case: Case, kind: Body) -> Iterator[str]:
         ("positions", d, f"{d} numbers"),
         ("orientations", 1 if d == 2 else 4, angle),
         ("velocities", d, f"{d} numbers"),
+        ("spins", 1 if d == 2 else 3, "1 number, about z" if d == 2 else "3 numbers"),
     ):
         rows = getattr(given, name)
-        if rows is None:
+        if rows is None or isinstance(rows, str):  # files are read by the start
             continue
         if len(rows) != kind.number:
             yield (
@@ -149,7 +152,10 @@ def _rows(case: Case, kind: Body) -> Iterator[str]:
         for i, row in enumerate(rows, start=1):
             if len(row) != width:
                 yield f"start.{name}[#{i}] = {show(row)}: expected {what}"
-    for i, row in enumerate(given.positions or (), start=1):
+    if given.spins is not None and "orientation" in kind.fixed:
+        yield "start.spins: not with fixed = 'orientation', which never turns"
+    rows = () if given.positions is None or isinstance(given.positions, str) else given.positions
+    for i, row in enumerate(rows, start=1):
         for axis, x, length in zip(case.box.axes, row, case.box.size, strict=True):
             if not 0 <= x <= length:
                 yield (
@@ -204,3 +210,36 @@ def _counter_force(case: Case, kind: Body) -> Iterator[str]:
     if case.fluid.force.uniform(case.box.dimension) is None:
         rule = show(name_of(case.fluid.force))
         yield f"{key}: not with fluid.force.rule = {rule}; expected 'uniform' or 'none'"
+
+
+def _counter(case: Case, kind: Body) -> Iterator[str]:
+    """A ball and a shell in the fluid, which meet no image of the body."""
+    d, counter = case.box.dimension, kind.counter
+    if counter is None:
+        return
+    solid, reach, key = kind.solid(d), 0.0, f"counter.shell = {show(counter.shell)}"
+    if counter.shell:
+        reach = solid.radius + counter.shell
+    if counter.at is not None:
+        key = f"counter.at = {show(counter.at)}"
+        if len(counter.at) != d:
+            yield f"{key}: expected {_numbers(d)}"
+            return
+        far = math.hypot(*counter.at)
+        reach = max(reach, far + counter.radius)
+        if solid.ball and far < solid.radius:
+            yield f"{key}: inside of the body; expected {solid.radius:.4g} or more from its centre"
+        unit = math.pi if d == 2 else 4.0 / 3.0 * math.pi
+        number = case.fluid.density * unit * counter.radius**d
+        if number < LEAST_NEARBY:
+            yield (
+                f"counter.radius = {show(counter.radius)}: about {number:.2g} particles; expected "
+                f"{LEAST_NEARBY:g} or more to take the force"
+            )
+    closed = closed_axes(case.walls)
+    for axis, length in zip(case.box.axes, case.box.size, strict=True):
+        if axis not in closed and 2.0 * reach + ROOM > length:
+            yield (
+                f"{key}: it reaches {reach:.4g} from the centre; expected at most "
+                f"{0.5 * (length - ROOM):g} in a box of {length:g} along {axis}"
+            )

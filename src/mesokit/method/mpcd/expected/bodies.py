@@ -115,7 +115,7 @@ class Followed(NamedTuple):
     def mobility(self) -> tuple[float, str]:
         """Velocity over force in this box."""
         known = self.alone_in_a_cube()
-        if known is None or self.kind.swim or holds(self.case):
+        if known is None or self.kind.swim or self.kind.counter or holds(self.case):
             return math.nan, ""
         radius, length, viscosity = known
         friction = theory.sphere_friction_in_cube
@@ -128,7 +128,7 @@ class Followed(NamedTuple):
     def rotational_mobility(self) -> tuple[float, str]:
         """Angular velocity over torque."""
         known = self.alone_in_a_cube()
-        if known is None or self.kind.swim or not self.turning:
+        if known is None or self.kind.swim or self.kind.counter or not self.turning:
             return math.nan, ""
         (radius, length, viscosity), (slip, why) = known, self.slip
         d, share = self.case.box.dimension, self.asymmetric_share

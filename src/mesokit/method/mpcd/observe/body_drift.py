@@ -74,7 +74,7 @@ class BodyDriftAccumulator(BlockAccumulator):
             known = rest if np.isnan(known) else known
             yield Comparison(name, mean[k], error[k], known, self._unit(k), why)
         kind, d = self.of.kind, self.dimension
-        if kind.frame == "body":
+        if kind.frame == "body" or kind.counter is not None:
             return
         torque = np.atleast_1d(kind.torque if kind.torque is not None else 0.0)
         for k, force in enumerate(kind.force or ()):

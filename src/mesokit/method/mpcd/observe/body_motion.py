@@ -16,7 +16,7 @@ from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
-COUNTED = ("second hits", "put back")
+COUNTED = ("second hits", "put back", "still hitting")
 
 
 @component
@@ -25,7 +25,8 @@ class BodyMotion(Observable):
 
     They are <V^2> M/(d kT), and <Omega_i^2> I_i/kT about each axis of the body. Where the momentum
     of all is zero, the first is 1 - M/M_all. Beside them stand the kinetic temperature of the
-    fluid, and in a step how many particles hit a body twice, or had to be put back out of one.
+    fluid, and in a step how many particles hit a body twice, had to be put back
+    out of one, or still hit in the last round of hits.
     """
 
     quantity: Literal["body-motion"] = tag("body-motion")

@@ -12,13 +12,13 @@ from mesokit.case.box import AXES
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.columns import freedoms, holds, in_random_solvent, temperature
 from mesokit.method.mpcd.expected import setting
-from mesokit.seam.engine import RunningFluid
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import BlockAccumulator, Observable, State, accumulator_of
 from mesokit.seam.result import NOT_STEADY, Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 ENERGY = "m a^2/tau^2"
+LEFT = ("put back", "still hitting")  # particles that bodies leave over
 ROWS = 4096  # kept of the time series; every other one is dropped when they are full
 
 
@@ -29,7 +29,9 @@ class Conservation(Observable):
     The temperature is that of the motion about the mean velocity, flow included. Fluids of
     molecules and solutes have a potential energy as well. Solutes and bodies that move count as
     particles; in a random solvent solutes are all there is. Bodies turn, too, which adds to the
-    energy; their virtual particles exchange energy with them.
+    energy; their virtual particles exchange energy with them. With bodies it counts the particles
+    that had to be put back out of one in a step, and those that still hit in the last round of
+    hits: both should be few.
     """
 
     quantity: Literal["conservation"] = tag("conservation")
@@ -44,7 +46,7 @@ class Conservation(Observable):
 class ConservationAccumulator(BlockAccumulator):
     """The first sample, a thinned time series, block averages and the largest drift."""
 
-    memory: ClassVar[tuple[str, ...]] = ("blocks", "first", "drift", "counts")
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "first", "drift", "counts", "left")
 
     def prepare(self) -> None:
         case = self.case
@@ -62,10 +64,14 @@ class ConservationAccumulator(BlockAccumulator):
         self.first = np.zeros(width)
         self.drift = np.zeros(2)  # largest change of momentum and of kinetic energy so far
         self.counts = np.array([0, 1, 0])  # rows kept, samples per row, samples
+        self.left = np.zeros(len(LEFT))  # particles that bodies left over, in all samples
         self.pooled = 1  # runs
 
-    def observe(self, fluid: RunningFluid) -> None:
+    def observe(self, fluid: Any) -> None:
         number, momentum, energy = fluid.totals()
+        if self.case.bodies:
+            found = fluid.bodies.counts()
+            self.left += [found[name] for name in LEFT]
         warmth = temperature(self.case, number, momentum, energy)
         bound = [fluid.potential_energy()] if self.bonded else []
         sample = np.array([number, *momentum, *bound, energy, warmth])
@@ -104,6 +110,7 @@ class ConservationAccumulator(BlockAccumulator):
         self.rows[: len(rows)] = rows
         self.first = (1 - share) * self.first + share * other.first
         self.drift = np.maximum(self.drift, other.drift)
+        self.left = self.left + other.left
         self.counts = np.array([len(rows), self.counts[1], self.counts[2] + other.counts[2]])
         self.pooled += 1
 
@@ -209,3 +216,6 @@ class ConservationAccumulator(BlockAccumulator):
             mean, error = self.blocks.mean()[-1], self.blocks.error()[-1]
             note = setting.temperature_note(self.case)
             yield Comparison("temperature", mean, error, fluid.kT, "", note)
+        for name, number in zip(LEFT, self.left, strict=True) if self.case.bodies else ():
+            in_a_step = float(number) / max(int(self.counts[2]), 1)
+            yield Comparison(f"particles {name} in a step", in_a_step, np.nan, np.nan)

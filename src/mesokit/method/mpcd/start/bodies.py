@@ -1,14 +1,15 @@
 """How bodies start: places without overlap, orientations and thermal velocities."""
 
 import math
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.body.protocol import GIVEN, LATTICE, RANDOM
+from mesokit.method.mpcd.body.protocol import LATTICE, RANDOM
 from mesokit.method.mpcd.engine.bodies.allocate import masses_of
 from mesokit.method.mpcd.start.body_room import (
     Apart,
@@ -19,6 +20,7 @@ from mesokit.method.mpcd.start.body_room import (
     tree_of,
 )
 from mesokit.method.mpcd.start.draws import Draws
+from mesokit.method.mpcd.start.known_bodies import KnownBodies, known_bodies
 from mesokit.scalar.random import INITIAL_BODIES
 
 Floats = NDArray[np.float64]
@@ -26,17 +28,43 @@ GAP = 0.85  # of the range of the potential of gaps: drawn bodies are at least s
 NONE = 1e-3  # cells, without a potential
 
 
-def first_places(case: Case) -> tuple[Floats, Floats]:
+class FirstBodies(NamedTuple):
+    """All kinds, one after the other: centres (bodies, d), orientations (bodies, 4), velocities
+    (bodies, d), angular velocities (bodies, 3), and whether any of these velocities were known."""
+
+    places: Floats
+    turns: Floats
+    velocities: Floats
+    spins: Floats
+    moving: bool
+
+
+def first_bodies(case: Case) -> FirstBodies:
+    """The bodies as they start, with thermal velocities where none are known.
+
+    Raises CaseError where there is no room, where bodies overlap, and for files and runs that do
+    not fit.
+    """
+    known = [known_bodies(case, number) for number in range(1, len(case.bodies) + 1)]
+    places, turns = first_places(case, known)
+    v, spins = first_velocities(case, places, turns, known)
+    moving = any(one.velocities is not None or one.spins is not None for one in known)
+    return FirstBodies(places, turns, v, spins, moving)
+
+
+def first_places(case: Case, known: Sequence[KnownBodies] = ()) -> tuple[Floats, Floats]:
     """Centres (bodies, d) and orientations (bodies, 4) of all kinds, one after the other.
 
-    Raises CaseError where there is no room, or where bodies overlap.
+    `known` is what the starts of the kinds say. Raises CaseError where there is no room, where
+    bodies overlap, and for files and runs that do not fit.
     """
+    known = known or [known_bodies(case, number) for number in range(1, len(case.bodies) + 1)]
     d, size = case.box.dimension, np.array(case.box.size, float)
     total = sum(kind.number for kind in case.bodies)
     places, turns, done, order = np.zeros((total, d)), np.zeros((total, 4)), 0, []
     for number, kind in enumerate(case.bodies, start=1):
         rows = slice(done, done + kind.number)
-        order.append((kind.start.rule != GIVEN, -kind.solid(d).radius, number, rows, kind))
+        order.append((known[number - 1].places is None, -kind.solid(d).radius, number, rows, kind))
         done += kind.number
     placed: list[Apart] = []
     # Given places first, then kinds of large bodies before those of small ones.
@@ -44,8 +72,8 @@ def first_places(case: Case) -> tuple[Floats, Floats]:
         ids = np.arange(rows.start, rows.stop)
         gap = GAP * kind.interaction.range if kind.interaction.depth else NONE
         reach = kind.solid(d).radius + 0.5 * gap
-        if kind.start.rule == GIVEN:
-            places[rows] = kind.start.positions
+        if (given := known[number - 1].places) is not None:
+            places[rows] = given
         elif kind.start.rule == LATTICE:
             places[rows] = _lattice(kind.number, size)
         else:
@@ -55,7 +83,8 @@ def first_places(case: Case) -> tuple[Floats, Floats]:
                     f"bodies[#{number}].number = {kind.number}: no room was found for more than "
                     f"{found}; expected fewer or smaller bodies, or start.rule = 'lattice'"
                 )
-        turns[rows] = _turns(case, kind, ids)
+        oriented = known[number - 1].turns
+        turns[rows] = _turns(case, kind, ids) if oriented is None else oriented
         placed.append(Apart(tree_of(places[rows], open_lengths(case)), reach))
     _require_room(case, places, turns)
     return places, turns
@@ -73,15 +102,9 @@ def _lattice(number: int, size: Floats) -> Floats:
 
 
 def _turns(case: Case, kind: Any, ids: NDArray[np.int64]) -> Floats:
-    """Orientations: given, drawn with random places, else those of the box."""
-    d, given = case.box.dimension, kind.start.orientations
+    """Orientations where none are known: drawn with random places, else those of the box."""
+    d = case.box.dimension
     turns = np.tile([1.0, 0.0, 0.0, 0.0], (len(ids), 1))
-    if given is not None:
-        rows = np.array(given, float)
-        if d == 2:
-            half = np.radians(0.5 * rows[:, 0])
-            return np.stack([np.cos(half), 0 * half, 0 * half, np.sin(half)], axis=1)
-        return rows / np.linalg.norm(rows, axis=1)[:, None]
     if kind.start.rule != RANDOM or kind.hinge is not None or "orientation" in kind.fixed:
         return turns
     random = Draws(case.run.seed, INITIAL_BODIES, ids, 2**20)
@@ -111,8 +134,11 @@ def _require_room(case: Case, places: Floats, turns: Floats) -> None:
         raise CaseError(f"{kind}.start: its body {i} is in a wall, about {deep[1]:.2g} deep")
 
 
-def first_velocities(case: Case, places: Floats, turns: Floats) -> tuple[Floats, Floats]:
-    """Thermal velocities (bodies, d) and angular velocities (bodies, 3), about a sheared flow."""
+def first_velocities(
+    case: Case, places: Floats, turns: Floats, known: Sequence[KnownBodies]
+) -> tuple[Floats, Floats]:
+    """Velocities (bodies, d) and angular velocities (bodies, 3): known ones, or thermal ones about
+    a sheared flow."""
     d, kT = case.box.dimension, case.fluid.kT
     numbers = [kind.number for kind in case.bodies]
     mass = np.repeat(masses_of(case), numbers)
@@ -125,8 +151,6 @@ def first_velocities(case: Case, places: Floats, turns: Floats) -> tuple[Floats,
         for k, name in enumerate("xyz"[:d]):
             if name in kind.fixed:
                 v[rows, k] = 0.0
-        if kind.start.velocities is not None:
-            v[rows] = kind.start.velocities
         inertia = m / solid.volume * solid.moments
         if "orientation" not in kind.fixed:
             spins[rows] = _thermal_spins(kind, inertia, own[rows], turns[rows], kT, d)
@@ -134,6 +158,12 @@ def first_velocities(case: Case, places: Floats, turns: Floats) -> tuple[Floats,
     if case.box.sheared:
         v[:, 0] += case.box.first_rate * (places[:, 1] - 0.5 * case.box.size[1])
         spins[:, 2] -= 0.5 * case.box.first_rate
+    done = 0
+    for kind, one in zip(case.bodies, known, strict=True):
+        rows = slice(done, done + kind.number)
+        v[rows] = v[rows] if one.velocities is None else one.velocities
+        spins[rows] = spins[rows] if one.spins is None else one.spins
+        done += kind.number
     return v, spins
 
 

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mesokit.case.case import Case
-from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.io import checkpoint
-from mesokit.io.arrays_file import LARGE
-from mesokit.io.run_directory import RunDirectory
 from mesokit.io.snapshot_file import read_snapshot
 from mesokit.method.mpcd.solute.free import FreeMolecule
 from mesokit.method.mpcd.start.arrays import read_arrays
 from mesokit.method.mpcd.start.bodies import first_places
+from mesokit.method.mpcd.start.earlier import last_of_run
 from mesokit.method.mpcd.start.snapshot import fitted, fitted_beads
 from mesokit.processes.alone import Alone
 
 if TYPE_CHECKING:
-    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
     from mesokit.processes.world import World
 
 ALONE = Alone()
@@ -59,7 +54,7 @@ def first_state(
         file=lambda case, path: fitted(case, read_snapshot(path, case.fluid.start.scale)),
     )
     if case.bodies:
-        first_places(case)
+        here.each(lambda: first_places(case))
     if case.solutes is None:
         for name, array in (("beads", beads), ("bead_velocities", bead_velocities)):
             if array is not None:
@@ -98,7 +93,7 @@ def _last_beads(case: Case, path: str) -> tuple[Any, Any]:
         rows = [(k.number, k.length, k.topology, k.arms, *k.pairs_of_beads) for k in kinds]
         return "solutes.polymers", rows
 
-    _, state = _last_fluid(case, path, polymers)
+    _, state = last_of_run(case, path, polymers)
     shape = -1, case.box.dimension
     return state["solute_r"].reshape(shape), state["solute_v"].reshape(shape)
 
@@ -114,26 +109,5 @@ def _last_state(case: Case, path: str) -> tuple[Any, Any]:
         rows = [(kind.mass, kind.number) for kind in case.groups[0].kinds]
         return "particles of (mass, number)", rows
 
-    fluid = _last_fluid(case, path, kinds)
+    fluid = last_of_run(case, path, kinds)
     return EarlierRows(*fluid, "positions"), EarlierRows(*fluid, "velocities")
-
-
-def _last_fluid(
-    case: Case, path: str, same: Callable[[Case], tuple[str, Any]]
-) -> tuple[Numbers, dict[str, Any]]:
-    """An earlier run and its last state, if its box and `same` are those of the case."""
-    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-
-    directory = RunDirectory.existing(path)
-    earlier = Case.from_toml(directory.case_file)
-    if earlier.run.method != case.run.method:
-        raise CaseError(f"that is a run of method {show(earlier.run.method)}")
-    (what, there), (_, here) = same(earlier), same(case)
-    for name, one, other in (
-        ("a box of", list(earlier.box.size), list(case.box.size)),
-        (what, there, here),
-    ):
-        if one != other:
-            raise CaseError(f"that run has {name} {show(one)}, this case {show(other)}")
-    arrays, _ = checkpoint.read(directory.checkpoint_file, large=LARGE)
-    return Numbers(earlier), checkpoint.part(arrays, "engine/")

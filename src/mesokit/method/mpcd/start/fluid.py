@@ -18,7 +18,7 @@ from mesokit.geometry.solids.contact import MARGIN
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.method.mpcd.start.arrays import OfFirst, rows_of
-from mesokit.method.mpcd.start.bodies import first_places, first_velocities
+from mesokit.method.mpcd.start.bodies import first_bodies
 from mesokit.method.mpcd.start.conformation import connected, drawn, nearest_of
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.start.growth import grown
@@ -188,15 +188,13 @@ def _begin_bodies(engine: Any, fluid_is_drawn: bool) -> Floats:
     """Give the bodies their first state; the drift (d,) to take off the fluid, so that the whole is
     at rest."""
     case, bodies = engine.numbers.case, engine.bodies
-    places, turns = first_places(case)
-    v, spins = first_velocities(case, places, turns)
-    drift = np.zeros(engine.numbers.dimension)
-    given = any(kind.start.velocities is not None for kind in case.bodies)
+    first = first_bodies(case)
+    v, drift = first.velocities, np.zeros(engine.numbers.dimension)
     fixed = any(kind.fixed for kind in case.bodies)
-    if fluid_is_drawn and not (given or fixed or case.box.sheared):
+    if fluid_is_drawn and not (first.moving or fixed or case.box.sheared):
         drift = bodies.masses @ v / (bodies.masses.sum() + engine.numbers.total_mass)
         v -= drift
-    bodies.begin(places, turns, v, spins)
+    bodies.begin(first.places, first.turns, v, first.spins)
     return drift
 
 

@@ -106,7 +106,7 @@ def fitted(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
     Raises CaseError unless box, number, masses and bonds are those of the case.
     """
     d, n = case.box.dimension, len(there.positions)
-    _require_box(case, there)
+    require_box(case, there)
     if n != case.particles:
         hint, density, molecule = "", case.fluid.density, case.fluid.molecule
         whole = molecule is None or n % molecule.length == 0
@@ -134,7 +134,7 @@ def fitted_beads(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
     """The same for the beads of solutes. Several kinds of molecules must be in the case's order."""
     assert case.solutes is not None
     solutes, d, n = case.solutes, case.box.dimension, len(there.positions)
-    _require_box(case, there)
+    require_box(case, there)
     if n != solutes.beads:
         raise CaseError(f"it has {n} particles, this case {solutes.beads} beads of solutes")
     if there.masses is not None:
@@ -172,7 +172,7 @@ def fitted_beads(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
     return places, velocities
 
 
-def _require_box(case: Case, there: Snapshot) -> None:
+def require_box(case: Case, there: Snapshot) -> None:
     """Raise CaseError for other lengths, no right angles, or in 2D particles not in one plane."""
     d, size = case.box.dimension, np.array(case.box.size, float)
     if np.abs(there.tilts).max() > ROUNDING:

@@ -78,9 +78,25 @@ def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
     if kind.hinge is not None and d == 3:
         row[state.HINGED] = 1.0
         row[state.HINGE : state.HINGE + 3] = np.array(kind.hinge) / math.hypot(*kind.hinge)
-    row[state.FORCE_GIVEN : state.FORCE_GIVEN + d] = kind.force or (0.0,) * d
+    nearby = kind.counter
+    by_ball = nearby is not None and nearby.at is not None
+    by_shell = nearby is not None and nearby.shell > 0
+    force_given = state.BALL_FORCE if by_ball else state.FORCE_GIVEN
+    torque_given = state.SHELL_TORQUE if by_shell else state.TORQUE_GIVEN
+    row[force_given : force_given + d] = kind.force or (0.0,) * d
     twist = kind.torque if isinstance(kind.torque, tuple) else (0.0, 0.0, kind.torque or 0.0)
-    row[state.TORQUE_GIVEN : state.TORQUE_GIVEN + 3] = twist
+    row[torque_given : torque_given + 3] = twist
+    row[state.REACH] = solid.radius
+    row[state.SWEPT] = 0.0 if solid.ball else solid.radius
+    if nearby is not None and by_shell:
+        row[state.SHELL] = nearby.shell
+        row[state.REACH] += nearby.shell
+        row[state.SWEPT] += 0.0 if solid.ball else nearby.shell
+    if nearby is not None and nearby.at is not None:
+        row[state.BALL_AT : state.BALL_AT + d] = nearby.at
+        row[state.BALL_RADIUS] = nearby.radius
+        far = math.hypot(*nearby.at) + nearby.radius
+        row[state.REACH], row[state.SWEPT] = max(row[state.REACH], far), max(row[state.SWEPT], far)
     row[state.IN_BODY_FRAME] = kind.frame == "body"
     kT = case.fluid.kT
     if kind.trap is not None:
@@ -138,7 +154,10 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
     travel = FAST * thermal + further + 0.5 * shear
     radii = np.array([kind.solid(d).radius for kind in case.bodies])
     shell = surface_bound(radii, d) * (2.0 * travel + 2.0)
-    most = int(min(numbers.n, ROOM * numbers.density * float(number @ shell) + 1000))
+    own = [(kind.counter, kind.solid(d)) for kind in case.bodies]
+    reached = np.array([0.0 if one is None else one.volume(solid, d) for one, solid in own])
+    near_them = float(number @ (shell + reached))
+    most = int(min(numbers.n, ROOM * numbers.density * near_them + 1000))
     filled = float(number @ surface_bound(radii + 1.0, d)) * 2.0 * numbers.density
     most_gas = int(ROOM * filled / threads + 0.2 * filled + 2000)
     cells = tuple(float(c) for c in numbers.cells)
@@ -185,6 +204,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
         chosen=zeros((threads, LANES), np.int64),
         flights=zeros((threads, 7, LANES)),
         waste=zeros((threads, waste), np.int64),
+        counters_near=(1,) if any(kind.counter for kind in case.bodies) else (),
         solid=walls,
         pull=balancing_pull(case),
         messages=() if domain is None else domain.body_messages(n, state.SUMS),

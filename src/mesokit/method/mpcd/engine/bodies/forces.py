@@ -74,7 +74,7 @@ def forces_on(bodies, physics, box, i, zero):
         for n in range(len(bodies.rows) if number == EVERY_BODY else number):
             j = n if number == EVERY_BODY else np.int64(bodies.partners[i, n])
             if j != i:
-                given, twist, apart = force_between(bodies, box, i, j, x, q)
+                given, twist, apart = force_between(bodies, box, i, j, zero)
                 force, torque = added(force, given), added(torque, twist)
                 virial = added(virial, products(scaled(0.5, given), apart))
         given, twist = force_of_walls(bodies, physics, i, x, q)
@@ -104,13 +104,27 @@ def force_of_gap(depth, reach, gap):
 
 
 @seldom
-def force_between(bodies, box, i, j, x, q):
-    """Force and torque on body i, at x, by body j: repulsion by the gap of all pairs of parts; also
-    the separation of their centres."""
-    depth = bodies.kinds[bodies.kind[j], DEPTH]
-    force, torque = scaled(0.0, x), THREE
+def force_between(bodies, box, i, j, x):
+    """Force and torque on body i by body j, and the separation of their centres.
+
+    The force on the body of the higher number is the opposite of that on the other one, to the last
+    bit: both are found as seen from the lower one.
+    """
+    if i < j:
+        force, torque, _, away = forces_of_pair(bodies, box, i, j, x)
+        return force, torque, away
+    force, _, torque, away = forces_of_pair(bodies, box, j, i, x)
+    return scaled(-1.0, force), torque, scaled(-1.0, away)
+
+
+@seldom
+def forces_of_pair(bodies, box, i, j, zero):
+    """Force on body i by body j, repulsion by the gap of all pairs of parts; the torques on both,
+    and the separation of their centres."""
+    depth, x = bodies.kinds[bodies.kind[j], DEPTH], load(bodies.rows, i, PLACE, zero)
+    force, torque, turning = scaled(0.0, x), THREE, THREE
     if depth == 0.0:
-        return force, torque, force
+        return force, torque, turning, force
     depth = math.sqrt(depth * of_kind(bodies, i, DEPTH))
     reach = 0.5 * (of_kind(bodies, i, RANGE) + of_kind(bodies, j, RANGE))
     other, _ = image_near(box, load(bodies.rows, j, PLACE, x), x)
@@ -118,16 +132,19 @@ def force_between(bodies, box, i, j, x, q):
     distance = math.sqrt(dot(away, away))
     gap = distance - of_kind(bodies, i, RADIUS) - of_kind(bodies, j, RADIUS)
     if gap >= reach:
-        return force, torque, away
+        return force, torque, turning, away
     if of_kind(bodies, i, IS_BALL) > 0.5 and of_kind(bodies, j, IS_BALL) > 0.5:
-        return scaled(force_of_gap(depth, reach, gap) / distance, away), torque, away
-    p = load(bodies.rows, j, TURN, FOUR)
+        given = scaled(force_of_gap(depth, reach, gap) / distance, away)
+        return given, torque, turning, away
+    q, p = load(bodies.rows, i, TURN, FOUR), load(bodies.rows, j, TURN, FOUR)
     for a in range(int(of_kind(bodies, i, FIRST_PART)), int(of_kind(bodies, i, PARTS_END))):
         for b in range(int(of_kind(bodies, j, FIRST_PART)), int(of_kind(bodies, j, PARTS_END))):
             mine, theirs = nearest_places(bodies, a, x, q, b, other, p)
-            given, arm = force_along(mine, theirs, depth, reach), added_scaled(mine, -1.0, x)
+            given = force_along(mine, theirs, depth, reach)
+            arm, others = added_scaled(mine, -1.0, x), added_scaled(theirs, -1.0, other)
             force, torque = added(force, given), added(torque, whole_spin(outer(arm, given)))
-    return force, torque, away
+            turning = added_scaled(turning, -1.0, whole_spin(outer(others, given)))
+    return force, torque, turning, away
 
 
 @scalar

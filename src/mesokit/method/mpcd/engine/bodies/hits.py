@@ -15,9 +15,7 @@ from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.bodies.linear import solve_reflection, unlevered
 from mesokit.method.mpcd.engine.bodies.motion import end_turn
-from mesokit.method.mpcd.engine.bodies.near import (
-    box_at_start,
-)
+from mesokit.method.mpcd.engine.bodies.near import box_at_start, lengthen_path
 from mesokit.method.mpcd.engine.bodies.outside import put_outside
 from mesokit.method.mpcd.engine.bodies.search import BLOCK, Flight, RandomHits, normal_at, to_body
 from mesokit.method.mpcd.engine.bodies.state import (
@@ -49,6 +47,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     SPIN,
     START,
     START_V,
+    STILL_HITTING,
     SUMS,
     THREE,
     TIME,
@@ -130,6 +129,7 @@ def reflect_all(worker, now, physics, fluid, bodies):
                 take_impulses(worker, physics, bodies, i)
             barrier(worker)
     for i in range(low, high):
+        lengthen_path(bodies, i, now, physics.timestep)
         finish_body(bodies, i, now, physics)
     barrier(worker)
     finish_flights(worker, now, physics, fluid, bodies)
@@ -385,7 +385,8 @@ def finish_flights(worker, now, physics, fluid, bodies):
     here = bodies.counters[thread]
     for j in range(here[COUNT]):
         r, lane = load(values, j, R, physics.zero), bodies.numbers[thread, j, LANE]
-        if bodies.numbers[thread, j, GOING] != 0:
+        if bodies.numbers[thread, j, GOING] != 0:  # it has hit in the last round
+            here[STILL_HITTING] += 1
             v = load(values, j, V, physics.zero)
             r = added_scaled(r, physics.timestep - values[j, TIME], v)
         cell = bodies.numbers[thread, j, CELL]

@@ -43,9 +43,11 @@ from mesokit.method.mpcd.engine.bodies.state import (
     store,
 )
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
+from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
 from mesokit.method.mpcd.engine.embedded.near import note
-from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
+from mesokit.method.mpcd.engine.embedded.state import STEP, TOO_MANY
+from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.streaming import halfway, vector
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
@@ -63,6 +65,11 @@ FARTHEST, ALLOWANCE = 250, 251  # where scratch memory has how far
 # surfaces go with one list
 
 
+def pushes(bodies):
+    """Whether the fluid near bodies takes counter-forces, from the numba type of `MovingBodies`."""
+    return len(field_of(bodies, "counters_near")) > 0
+
+
 @scalar
 def box_at_start(now, physics):
     """The box as it is when the flight of this step begins."""
@@ -73,8 +80,7 @@ def box_at_start(now, physics):
 def path_of_surface(bodies, i, time):
     """The longest way that the surface of a body goes in a timestep; a ball that turns stays."""
     u, w = load(bodies.rows, i, MEAN_VELOCITY, THREE), load(bodies.rows, i, MEAN_SPIN, THREE)
-    turning = 0.0 if of_kind(bodies, i, IS_BALL) > 0.5 else of_kind(bodies, i, RADIUS)
-    return time * (math.sqrt(dot(u, u)) + turning * math.sqrt(dot(w, w)))
+    return time * (math.sqrt(dot(u, u)) + of_kind(bodies, i, state.SWEPT) * math.sqrt(dot(w, w)))
 
 
 @scalar
@@ -116,8 +122,25 @@ def note_paths(worker, now, physics, bodies):
         bodies.rows[i, STRIDE] = 2.0 * path + SPARE + slide_of(now.box) * physics.timestep
         farthest = max(farthest, bodies.rows[i, PATH] + bodies.rows[i, STRIDE])
         bodies.rows[i, PATH] += path
+        if bodies.rows[i, PATH] > PARTNERS_HOLD and of_kind(bodies, i, state.DEPTH) > 0.0:
+            note_fast(bodies.faults[worker.thread], now.counter.step, i, path / physics.timestep)
     farthest = farthest_of_all(worker, bodies, farthest)
     bodies.work[worker.thread, ALLOWANCE] = farthest
+
+
+@seldom
+def note_fast(faults, step, i, speed):
+    """Note a body that goes farther than the list of its partners holds: it may miss a gap."""
+    if faults[STEP] == 0:
+        faults[state.SPEED] = np.int64(min(speed, 1e9) / state.MILLIONTH)
+    note(faults, step, state.TOO_FAST, i + 1)
+
+
+@seldom
+def lengthen_path(bodies, i, now, time):
+    """Add what hits have added to the path of body i in this step."""
+    planned = 0.5 * (bodies.rows[i, STRIDE] - SPARE - slide_of(now.box) * time)
+    bodies.rows[i, PATH] += max(path_of_surface(bodies, i, time) - planned, 0.0)
 
 
 @by_type
@@ -153,7 +176,7 @@ def list_by_cells(worker, box, bodies, zero):
 @scalar
 def list_around(bodies, box, i, mine, zero):
     """Put body i on the lists of those of my cells that its surface comes near."""
-    d, x, radius = len(zero), load(bodies.rows, i, PLACE, zero), of_kind(bodies, i, RADIUS)
+    d, x, radius = len(zero), load(bodies.rows, i, PLACE, zero), of_kind(bodies, i, state.REACH)
     reach = LIST_REACH + HALF_DIAGONAL + (0.5 if slides(box) else 0.0)
     low, high = zero, zero
     for k in range(d):
@@ -175,7 +198,7 @@ def list_around(bodies, box, i, mine, zero):
                     cell = np.int64(cell_index(here, bodies.grid))
                     if mine[0] <= cell < mine[1]:
                         away = added_scaled(middle, -1.0, x)
-                        if distance_of(bodies, kind, q, away) <= reach:
+                        if distance_of_all(bodies, kind, q, away) <= reach:
                             put_on_list(bodies, cell, i)
                             clear_cubes(bodies, box, kind, q, cell, away)
 
@@ -189,6 +212,47 @@ def distance_of(bodies, kind, q, s):
     return c
 
 
+@where("distance_of(bodies, kind, q, s)", bodies=pushes)
+def distance_of_all(bodies, kind, q, s):
+    """The same with the ball and the shell in which the fluid takes counter-forces."""
+    c = distance_of(bodies, kind, q, s) - bodies.kinds[kind, state.SHELL]
+    radius = bodies.kinds[kind, state.BALL_RADIUS]
+    return min(c, distance_to_ball(bodies, kind, q, s) - radius) if radius > 0.0 else c
+
+
+@seldom
+def distance_to_ball(bodies, kind, q, s):
+    """Distance of a place at an arm from the middle of the ball of a kind."""
+    away = added_scaled(s, -1.0, state.rotated(q, load(bodies.kinds, kind, state.BALL_AT, s)))
+    return math.sqrt(dot(away, away))
+
+
+@seldom
+def is_in_ball(bodies, i, s):
+    """Whether a place at an arm from body i is where the fluid takes its counter-force."""
+    radius, q = of_kind(bodies, i, state.BALL_RADIUS), load(bodies.rows, i, TURN, state.FOUR)
+    return radius > 0.0 and distance_to_ball(bodies, bodies.kind[i], q, s) < radius
+
+
+@seldom
+def is_in_shell(bodies, i, s):
+    """Whether a place at an arm from body i is where the fluid takes its counter-torque."""
+    thick, q = of_kind(bodies, i, state.SHELL), load(bodies.rows, i, TURN, state.FOUR)
+    return thick > 0.0 and distance_of(bodies, bodies.kind[i], q, s) < thick
+
+
+@where("False", bodies=pushes)
+def takes_counter(bodies, box, cell, r):
+    """Whether the particle at r takes a counter-force or counter-torque of a body near its cell."""
+    for n in range(bodies_near(bodies, cell)):
+        i = body_near(bodies, cell, n)
+        x, _ = image_near(box, load(bodies.rows, i, PLACE, r), r)
+        s = added_scaled(r, -1.0, x)
+        if is_in_ball(bodies, i, s) or is_in_shell(bodies, i, s):
+            return True
+    return False
+
+
 @seldom
 def clear_cubes(bodies, box, kind, q, cell, s):
     """Lower what is clear around the halves of a cell whose middle is at an arm."""
@@ -197,7 +261,11 @@ def clear_cubes(bodies, box, kind, q, cell, s):
         at = s
         for k in range(d):
             at = with_item(at, k, s[k] + (0.25 if (cube >> k) & 1 else -0.25))
-        c = distance_of(bodies, kind, q, at) - 0.5 * HALF_DIAGONAL - (0.5 if slides(box) else 0.0)
+        c = (
+            distance_of_all(bodies, kind, q, at)
+            - 0.5 * HALF_DIAGONAL
+            - (0.5 if slides(box) else 0.0)
+        )
         clear = np.uint8(int(min(max(c, 0.0), LIST_REACH) * PARTS))
         place = half_of(bodies, cell, cube, d)
         bodies.clear[place] = min(bodies.clear[place], clear)
@@ -306,7 +374,7 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
         i, cell = marks[j], np.int64(cubes[j])
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         path = longest_flight(bodies, physics, r, v)
-        if may_hit(bodies, physics, box, cell, r, v, path):
+        if may_hit(bodies, physics, box, cell, r, v, path) or takes_counter(bodies, box, cell, r):
             n = bodies.counters[thread, COUNT]
             if n == bodies.values.shape[1]:
                 note(bodies.faults[thread], now.counter.step, TOO_MANY, 0)
@@ -419,11 +487,14 @@ def meets_ball(radius, y, w, time):
 
 @scalar
 def store_flight(bodies, physics, box, cell, r, v, path, flights, j):
-    """Note the flight of a candidate by the ball that is alone near it; else one that meets it."""
+    """Note the flight of a candidate by the ball that is alone near it.
+
+    Where no ball is, or the particle takes a counter-force, it is one that meets the ball.
+    """
     y, w, radius = r, v, BEYOND
     if cell != EVERY_BODY and bodies.near_count[cell] == 1:
         i = np.int64(bodies.near[cell, 0])
-        if of_kind(bodies, i, IS_BALL) > 0.5:
+        if of_kind(bodies, i, IS_BALL) > 0.5 and not takes_counter(bodies, box, cell, r):
             x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
             radius, w = flight_by_ball(bodies, i, v, speed, path, physics.timestep)
             y = added_scaled(r, -1.0, x)

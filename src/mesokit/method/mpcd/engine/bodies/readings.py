@@ -14,7 +14,12 @@ from mesokit.method.mpcd.body.protocol import named
 from mesokit.method.mpcd.engine.beads.interactions import first_fault
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.allocate import masses_of
-from mesokit.method.mpcd.engine.bodies.near import cell_of, list_by_cells
+from mesokit.method.mpcd.engine.bodies.near import (
+    LISTS_HOLD,
+    PARTNERS_HOLD,
+    cell_of,
+    list_by_cells,
+)
 from mesokit.method.mpcd.engine.bodies.outside import deepest
 from mesokit.method.mpcd.engine.bodies.state import (
     ANGLE,
@@ -28,10 +33,12 @@ from mesokit.method.mpcd.engine.bodies.state import (
     PUT_BACK,
     SECOND_HITS,
     SPIN,
+    STILL_HITTING,
     TORQUE,
     TURN,
     VELOCITY,
 )
+from mesokit.method.mpcd.engine.embedded.state import STEP, WHAT, WHICH
 from mesokit.scalar.vector import row, scaled
 
 Floats = NDArray[np.float64]
@@ -125,10 +132,11 @@ class BodyReadings:
         return self._columns(TORQUE, 3)
 
     def counts(self) -> dict[str, int]:
-        """Second hits and particles put back in the last step."""
-        counters = self.state_of.counters[:, [SECOND_HITS, PUT_BACK]].sum(axis=0)
-        second, put_back = self.reduced(counters).tolist()
-        return {"second hits": second, "put back": put_back}
+        """Of the last step: second hits, particles put back, and those that hit in the last
+        round, after which they fly on freely."""
+        counters = self.state_of.counters[:, [SECOND_HITS, PUT_BACK, STILL_HITTING]].sum(axis=0)
+        second, put_back, still = self.reduced(counters).tolist()
+        return {"second hits": second, "put back": put_back, "still hitting": still}
 
     def forget_lists(self) -> None:
         """Lists are made anew at the next step."""
@@ -200,9 +208,24 @@ class BodyReadings:
                 f"step {step}: particle {which - 1} is caught between bodies; expected a longer "
                 "bodies.interaction.range"
             )
+        if what == state.TOO_FAST:
+            raise RunError(f"step {step}: {self._too_fast(step, which)}")
         raise RunError(
             f"step {step}: twice as many particles at bodies as there are in equilibrium; expected "
             "a fluid that is not so dense there"
+        )
+
+    def _too_fast(self, step: int, which: int) -> str:
+        """What is said of a body, by its number from 1, that has gone too far in a step."""
+        noted = self.state_of.faults[:, [STEP, WHAT, WHICH]] == [step, state.TOO_FAST, which]
+        speed = self.state_of.faults[noted.all(axis=1)][0, state.SPEED] * state.MILLIONTH
+        kind = self.kinds[which - 1]
+        number = which - int(np.searchsorted(self.kinds, kind))
+        path, most = speed * self.case.fluid.timestep, PARTNERS_HOLD - LISTS_HOLD
+        return (
+            f"body {number} of {self.names[kind]} goes {path:.3g} cells in a timestep, at a speed "
+            f"of {speed:.4g}; expected at most {most:.3g}, or gaps may be missed: a shorter "
+            "fluid.timestep or weaker forces"
         )
 
 

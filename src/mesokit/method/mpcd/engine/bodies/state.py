@@ -23,7 +23,8 @@ FORCE, TORQUE = 31, 34  # impulse of the last timestep over its length
 HOME = 37  # where a trap holds it
 PATH, STRIDE = 40, 41  # how far its surface went since lists were made, and may go in this step
 END_TURN, BEGIN, BEGIN_TURN = 42, 46, 49  # orientation after this timestep; both before it
-COLUMNS = 53
+PUSH = 53  # impulse on a particle in its ball; w (3) and c (3) of the gain w x s + c in its shell
+COLUMNS = 62
 
 # Columns of the row of a kind. Symmetric matrices are xx, yy, zz, xy, xz, yz in the body's frame.
 MASS, INVERSE, ROOT = 0, 1, 4  # 1/mass and its root, for each axis: 0 where it is fixed
@@ -36,7 +37,13 @@ DEPTH, RANGE = 45, 46  # of the potential of gaps; DEPTH 0 for none
 B1, B2, TUMBLES = 47, 48, 49
 FIRST_PART, PARTS_END = 50, 51
 DISPLACED, HALF_LENGTH = 52, 53  # mass of fluid in its place; from its centre along axis x
-KIND_COLUMNS = 54
+# The fluid in a ball takes the counter-force of BALL_FORCE, that in a shell the counter-torque of
+# SHELL_TORQUE; 0 for none. REACH: from the centre to all of these; SWEPT: as far as its turns move
+# anything.
+BALL_AT, BALL_RADIUS, BALL_FORCE = 54, 57, 58
+SHELL, SHELL_TORQUE = 61, 62
+REACH, SWEPT = 65, 66
+KIND_COLUMNS = 67
 
 # Columns of a particle near bodies.
 R, V, START, START_V, TIME, ARM, NORMAL, SHEAR = 0, 3, 6, 9, 12, 13, 16, 19
@@ -56,9 +63,10 @@ GAS_PLACE, GAS_VELOCITY, GAS_KEPT, GAS_ARM = 0, 3, 6, 9
 GAS_SPEED, GAS_MASS, GAS_INNER = 12, 13, 14
 GAS_COLUMNS = 15
 # Counters of a thread.
-COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT = 0, 1, 2, 3, 4
+COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT, STILL_HITTING = 0, 1, 2, 3, 4, 5
 COUNTERS = 8
-CAUGHT = 4  # what a fault may be, beside those of `embedded.state`
+CAUGHT, TOO_FAST = 4, 5  # what a fault may be, beside those of `embedded.state`
+SPEED, MILLIONTH = 3, 1e-6  # of a fault: where the speed of a body is, and in what
 WORK = 256  # floats of scratch memory of a thread
 
 
@@ -85,6 +93,7 @@ class MovingBodies(NamedTuple):
     counters (threads, COUNTERS); faults (threads, 8): the first thing that goes wrong; work
     (threads, WORK), chosen (threads, LANES), flights (threads, 7, LANES): scratch memory; waste:
     what walls take by flights that do not count.
+    counters_near: (1,) where the fluid near bodies takes counter-forces, else ().
     solid: walls as the potential of gaps sees them, or (). pull: the uniform acceleration of all
     that balances forces on bodies. messages: to other ranks, or ().
     """
@@ -127,6 +136,7 @@ class MovingBodies(NamedTuple):
     chosen: Any
     flights: Any
     waste: Any
+    counters_near: tuple
     solid: tuple
     pull: tuple
     messages: Any

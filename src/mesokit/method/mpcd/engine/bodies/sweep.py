@@ -16,6 +16,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     PUT_BACK,
     SECOND_HITS,
     START,
+    STILL_HITTING,
     R,
     V,
     load,
@@ -63,7 +64,7 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
     sums, here = fluid.cells.sums[worker.thread], bodies.counters[worker.thread]
     tensor, measured = fluid.taken.tensor, now.flags & MEASURE_STRESS
     if now.flags & STREAM:
-        here[COUNT] = here[PUT_BACK] = here[SECOND_HITS] = 0
+        here[COUNT] = here[PUT_BACK] = here[SECOND_HITS] = here[STILL_HITTING] = 0
     first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
     # As `cpu.sweep`, but particles near a body are copied to a list with r and v at t, after the
     # collision. Their lanes fly with the others, for whole vectors, and do not count: their terms
