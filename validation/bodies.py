@@ -460,8 +460,8 @@ def rotation(page: Page) -> None:
     )
     rows = []
     for d, rule, length, torque in (
-        (2, "at+a", 2e6, 40.0), (2, "srd+a", 2e6, 40.0), (3, "at+a", 6e5, 240.0),
-        (3, "srd+a", 6e5, 240.0), (3, "srd", 4e5, 180.0),
+        (2, "at+a", 2e6, 40.0), (3, "at+a", 6e4, 240.0), (3, "srd+a", 6e4, 240.0),
+        (3, "srd", 6e4, 180.0),
     ):  # fmt: skip
         body = DiskBody(radius=3, torque=torque) if d == 2 else SphereBody(
             radius=3, torque=(0.0, 0.0, torque)
@@ -766,8 +766,8 @@ def make(parts: Sequence[str] = tuple(PARTS)) -> int:
         f"Density {DENSITY} of particles, timestep {STEP} unless said, no-slip surfaces with "
         "virtual particles (`fill`), bodies of the fluid's density. The tables state run lengths "
         f"in steps. These are runs of {LENGTH:g} of the full length, so that many error bars are "
-        "wide: a row that agrees within a wide error bar says little, and is not listed as met. Runs "
-        "of few relaxation times have error bars that are too small."
+        "wide: a row that agrees within a wide error bar says little, and is not listed as met. "
+        "Runs of few relaxation times have error bars that are too small."
     )
     for name in parts:
         PARTS[name](page)
