@@ -66,7 +66,7 @@ LEFT_OUT = (
     ("hindered settling; structure at rest", "many spheres need longer runs than these"),
     ("D + U^2/(d (d - 1) D_r) of swimmers; swimmers at a wall",
      "runs of many times 1/D_r, 1000 time units at R = 3"),
-    ("two spheres", "they drift apart before their speed is known to 10 %"),
+    ("two spheres", "they drift apart: many short runs would be needed"),
     ("spheroid in the shear plane, 3D", "2D ellipses take its place"),
 )  # fmt: skip
 
