@@ -15,7 +15,7 @@ NAMES = (
     "conservation", "round_flows", "drag", "wakes", "solids_at_rest", "solids_inside",
     "bonded_modes", "viscoelastic", "polymer_diffusion", "colloids", "pooled_runs",
     "random_numbers", "demix", "flocks", "hard_spheres", "soft_spheres", "kinetic_monte_carlo",
-    "contact_dynamics", "liquid", "freezing", "error_bars",
+    "contact_dynamics", "liquid", "freezing", "error_bars", "bodies",
 )  # fmt: skip
 
 
