@@ -12,9 +12,7 @@ from mesokit.case.given.array_file import EXPECTED, array_in_file
 from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.io import gsd_file
 from mesokit.method.mpcd.body.protocol import RUN, Body, named
-from mesokit.method.mpcd.start.earlier import last_of_run
 from mesokit.method.mpcd.start.snapshot import require_box
 
 Floats = NDArray[np.float64]
@@ -145,6 +143,8 @@ def _of_run(case: Case, kind: Body, wanted: str) -> KnownBodies:
 
     Raises CaseError unless box, shape and number are those of the case.
     """
+    from mesokit.method.mpcd.start.earlier import last_of_run
+
     d, start = case.box.dimension, kind.start
     assert start.run is not None
     numbers, state = last_of_run(case, start.run, lambda case: ("bodies", True))
@@ -172,6 +172,8 @@ def _of_file(case: Case, kind: Body, wanted: str) -> KnownBodies:
 
     Raises CaseError unless box and number are those of the case.
     """
+    from mesokit.io import gsd_file
+
     d, start = case.box.dimension, kind.start
     assert start.file is not None
     if Path(start.file).suffix != ".gsd":
