@@ -223,7 +223,7 @@ def gas_together(thread, counter, physics, bodies, at, key):
         if dot(s, s) < radius * radius:
             place, draw = s, MOST_DRAWS
         draw += 1
-    return put_gas(thread, counter, physics, bodies, at, Drawn(key, 0, number, place))
+    return put_gas(thread, counter, physics, bodies, at, GasDraw(key, 0, number, place))
 
 
 @scalar
@@ -233,7 +233,7 @@ def gas_one_by_one(thread, counter, physics, bodies, at, key):
     for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
         s = uniform_arm(counter, at, key, j)
         if depth_at(bodies, at.body, s) < 0.0:
-            drawn = Drawn(key, j, 1, s)
+            drawn = GasDraw(key, j, 1, s)
             found = added(found, put_gas(thread, counter, physics, bodies, at, drawn))
     return found
 
@@ -244,7 +244,7 @@ def mean_gas(bodies, i):
     return bodies.density * of_kind(bodies, i, FILLED)
 
 
-class Drawn(NamedTuple):
+class GasDraw(NamedTuple):
     """Particles of the gas: key of their cell, number of the first, how many, and their arm."""
 
     key: np.int64

@@ -360,10 +360,7 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
     flights = bodies.flights[thread]
     for j in range(candidates):
         r, v = load_particle(strip, marks[j], 0, zero), load_particle(strip, marks[j], d, zero)
-        path = longest_flight(bodies, physics, r, v)
-        cell = list_of(bodies, box, r, path + allowance)
-        cubes[j] = np.int32(cell)
-        store_flight(bodies, physics, box, cell, r, v, path, flights, j)
+        cubes[j] = np.int32(store_flight(bodies, physics, box, r, v, allowance, flights, j))
     for j in range(candidates):
         y, w = load_flight(flights, 0, j, zero), load_flight(flights, d, j, zero)
         flights[RADIUS_OF, j] = 1.0 if meets_ball(flights[RADIUS_OF, j], y, w, time) else 0.0
@@ -486,12 +483,13 @@ def meets_ball(radius, y, w, time):
 
 
 @scalar
-def store_flight(bodies, physics, box, cell, r, v, path, flights, j):
-    """Note the flight of a candidate by the ball that is alone near it.
+def store_flight(bodies, physics, box, r, v, allowance, flights, j):
+    """Note the flight of a candidate by the ball that is alone near it; the cell whose list holds.
 
     Where no ball is, or the particle takes a counter-force, it is one that meets the ball.
     """
-    y, w, radius = r, v, BEYOND
+    y, w, radius, path = r, v, BEYOND, longest_flight(bodies, physics, r, v)
+    cell = list_of(bodies, box, r, path + allowance)
     if cell != EVERY_BODY and bodies.near_count[cell] == 1:
         i = np.int64(bodies.near[cell, 0])
         if of_kind(bodies, i, IS_BALL) > 0.5 and not takes_counter(bodies, box, cell, r):
@@ -501,6 +499,7 @@ def store_flight(bodies, physics, box, cell, r, v, path, flights, j):
     for k in range(len(r)):
         flights[k, j], flights[len(r) + k, j] = y[k], w[k]
     flights[RADIUS_OF, j] = radius
+    return cell
 
 
 @scalar
