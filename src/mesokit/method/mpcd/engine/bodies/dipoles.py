@@ -26,11 +26,11 @@ from mesokit.method.mpcd.engine.bodies.state import (
     COUNT,
     FOUR,
     IN_BODY_FRAME,
+    KICK,
     LANE,
     MEAN_SPIN,
     MEAN_VELOCITY,
     PLACE,
-    KICK,
     SHELL,
     SHELL_TORQUE,
     SPIN,
@@ -79,7 +79,7 @@ def kick_fluid(worker, now, physics, fluid, bodies):
         share_kick(worker, physics, bodies, i)
     barrier(worker)
     for j in range(mine):
-        kick_particle(now, physics, fluid, bodies, thread, j)
+        kick_if_nearby(now, physics, fluid, bodies, thread, j)
     barrier(worker)
     add_others(worker, bodies, bodies.taken, 0)
     for i in range(low, high):
@@ -179,7 +179,7 @@ def turn_of_shell(sums, torque, zero):
 
 
 @seldom
-def kick_particle(now, physics, fluid, bodies, thread, j):
+def kick_if_nearby(now, physics, fluid, bodies, thread, j):
     """Change the velocity of a particle that is in the ball or the shell of a body."""
     values, cell = bodies.values[thread], bodies.numbers[thread, j, CELL]
     r, scale = load(values, j, START, physics.zero), momentum_scale(physics)
