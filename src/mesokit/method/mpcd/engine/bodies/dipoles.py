@@ -26,11 +26,11 @@ from mesokit.method.mpcd.engine.bodies.state import (
     COUNT,
     FOUR,
     IN_BODY_FRAME,
+    KICK,
     LANE,
     MEAN_SPIN,
     MEAN_VELOCITY,
     PLACE,
-    PUSH,
     SHELL,
     SHELL_TORQUE,
     SPIN,
@@ -63,7 +63,7 @@ LEAST = 1e-9  # of the size of a shell: moments below are those of one particle,
 
 
 @stage
-def push_fluid(worker, now, physics, fluid, bodies):
+def kick_fluid(worker, now, physics, fluid, bodies):
     """Impulses at t, after the collision, on the fluid near bodies and on these."""
     if not now.flags & STREAM:
         return
@@ -76,14 +76,14 @@ def push_fluid(worker, now, physics, fluid, bodies):
     barrier(worker)
     add_others(worker, bodies, bodies.sums, 0)
     for i in range(low, high):
-        share_push(worker, physics, bodies, i)
+        share_kick(worker, physics, bodies, i)
     barrier(worker)
     for j in range(mine):
-        push_particle(now, physics, fluid, bodies, thread, j)
+        kick_if_nearby(now, physics, fluid, bodies, thread, j)
     barrier(worker)
     add_others(worker, bodies, bodies.taken, 0)
     for i in range(low, high):
-        take_push(worker, physics, bodies, i)
+        take_kick(worker, physics, bodies, i)
     barrier(worker)
 
 
@@ -112,7 +112,7 @@ def count_nearby(now, physics, fluid, bodies, thread, j):
 
 
 @seldom
-def share_push(worker, physics, bodies, i):
+def share_kick(worker, physics, bodies, i):
     """From the sums of body i: the impulse on each particle in its ball, and the velocity w x s + c
     that those in its shell gain."""
     total, zero, time = bodies.sums[0, i], physics.zero, physics.timestep
@@ -131,9 +131,9 @@ def share_push(worker, physics, bodies, i):
         torque = scaled(-time * bodies.mass_scale / (bodies.lever * bodies.lever), torque)
         middle, w = turn_of_shell(total[MOMENTS:], torque, zero)
         c = scaled(-bodies.lever, swept(w, middle))
-    store(bodies.rows, i, PUSH, impulse)
-    store(bodies.rows, i, PUSH + 3, w)
-    store(bodies.rows, i, PUSH + 6, c)
+    store(bodies.rows, i, KICK, impulse)
+    store(bodies.rows, i, KICK + 3, w)
+    store(bodies.rows, i, KICK + 6, c)
 
 
 @by_type
@@ -179,7 +179,7 @@ def turn_of_shell(sums, torque, zero):
 
 
 @seldom
-def push_particle(now, physics, fluid, bodies, thread, j):
+def kick_if_nearby(now, physics, fluid, bodies, thread, j):
     """Change the velocity of a particle that is in the ball or the shell of a body."""
     values, cell = bodies.values[thread], bodies.numbers[thread, j, CELL]
     r, scale = load(values, j, START, physics.zero), momentum_scale(physics)
@@ -193,9 +193,9 @@ def push_particle(now, physics, fluid, bodies, thread, j):
             continue
         given = scaled(0.0, r)
         if in_ball:
-            given = load(bodies.rows, i, PUSH, r)
+            given = load(bodies.rows, i, KICK, r)
         if in_shell:
-            w, c = load(bodies.rows, i, PUSH + 3, THREE), load(bodies.rows, i, PUSH + 6, r)
+            w, c = load(bodies.rows, i, KICK + 3, THREE), load(bodies.rows, i, KICK + 6, r)
             given = added_scaled(given, m, added(swept(w, s), c))
         units = added_quanta(given, scale, integers(r))
         v = added_scaled(load(values, j, START_V, r), 1.0 / (scale * m), floats(units))
@@ -210,7 +210,7 @@ def push_particle(now, physics, fluid, bodies, thread, j):
 
 
 @seldom
-def take_push(worker, physics, bodies, i):
+def take_kick(worker, physics, bodies, i):
     """Give body i the opposite of its impulses; in this step it moves at the mean of its velocities
     before and after them."""
     if of_kind(bodies, i, BALL_RADIUS) == 0.0 and of_kind(bodies, i, SHELL) == 0.0:

@@ -65,7 +65,7 @@ FARTHEST, ALLOWANCE = 250, 251  # where scratch memory has how far
 # surfaces go with one list
 
 
-def pushes(bodies):
+def kicks_fluid(bodies):
     """Whether the fluid near bodies takes counter-forces, from the numba type of `MovingBodies`."""
     return len(field_of(bodies, "counters_near")) > 0
 
@@ -212,7 +212,7 @@ def distance_of(bodies, kind, q, s):
     return c
 
 
-@where("distance_of(bodies, kind, q, s)", bodies=pushes)
+@where("distance_of(bodies, kind, q, s)", bodies=kicks_fluid)
 def distance_of_all(bodies, kind, q, s):
     """The same with the ball and the shell in which the fluid takes counter-forces."""
     c = distance_of(bodies, kind, q, s) - bodies.kinds[kind, state.SHELL]
@@ -241,7 +241,7 @@ def is_in_shell(bodies, i, s):
     return thick > 0.0 and distance_of(bodies, bodies.kind[i], q, s) < thick
 
 
-@where("False", bodies=pushes)
+@where("False", bodies=kicks_fluid)
 def takes_counter(bodies, box, cell, r):
     """Whether the particle at r takes a counter-force or counter-torque of a body near its cell."""
     for n in range(bodies_near(bodies, cell)):

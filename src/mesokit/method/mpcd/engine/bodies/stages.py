@@ -1,11 +1,11 @@
 """The stages of a step that bodies add, in their order: the algorithm at a glance."""
 
 from mesokit.kernels.kernel import inner
-from mesokit.method.mpcd.engine.bodies.dipoles import push_fluid
+from mesokit.method.mpcd.engine.bodies.dipoles import kick_fluid
 from mesokit.method.mpcd.engine.bodies.gas import draw_all_gas, take_recoil
 from mesokit.method.mpcd.engine.bodies.hits import reflect_all
 from mesokit.method.mpcd.engine.bodies.motion import begin_step
-from mesokit.method.mpcd.engine.bodies.near import pushes
+from mesokit.method.mpcd.engine.bodies.near import kicks_fluid
 from mesokit.method.mpcd.engine.bodies.sweep import stream_around_bodies
 from mesokit.method.mpcd.engine.where import where
 
@@ -15,14 +15,14 @@ def stream_with_bodies(worker, now, physics, fluid, bodies):
     """The collision at t, and the flight t -> t + dt of bodies and fluid."""
     begin_step(worker, now, physics, bodies)  # forces; one rigid motion of each body
     stream_around_bodies(worker, now, physics, fluid, bodies)  # particles that no body can reach
-    push_nearby(worker, now, physics, fluid, bodies)  # counter-forces on the fluid near bodies
+    kick_nearby(worker, now, physics, fluid, bodies)  # counter-forces on the fluid near bodies
     reflect_all(worker, now, physics, fluid, bodies)  # all others: hits, one reflection a body
 
 
-@where(bodies=pushes)
-def push_nearby(worker, now, physics, fluid, bodies):
+@where(bodies=kicks_fluid)
+def kick_nearby(worker, now, physics, fluid, bodies):
     """Forces and torques on bodies that the fluid nearby takes back."""
-    push_fluid(worker, now, physics, fluid, bodies)
+    kick_fluid(worker, now, physics, fluid, bodies)
 
 
 @where(bodies=len)

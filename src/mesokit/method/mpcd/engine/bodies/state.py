@@ -23,7 +23,7 @@ FORCE, TORQUE = 31, 34  # impulse of the last timestep over its length
 HOME = 37  # where a trap holds it
 PATH, STRIDE = 40, 41  # how far its surface went since lists were made, and may go in this step
 END_TURN, BEGIN, BEGIN_TURN = 42, 46, 49  # orientation after this timestep; both before it
-PUSH = 53  # impulse on a particle in its ball; w (3) and c (3) of the gain w x s + c in its shell
+KICK = 53  # impulse on a particle in its ball; w (3) and c (3) of the gain w x s + c in its shell
 COLUMNS = 62
 
 # Columns of the row of a kind. Symmetric matrices are xx, yy, zz, xy, xz, yz in the body's frame.
