@@ -35,6 +35,9 @@ from mesokit.method.mpcd.engine.bodies.state import (
     rotated_back,
     whole_spin,
 )
+from mesokit.method.mpcd.engine.cpu.bounce import add_recoil
+from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
+from mesokit.method.mpcd.engine.domains.messages.bodies import counts_for_all
 from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.method.mpcd.streaming import vector
@@ -47,8 +50,12 @@ CLOSE = 1e-9  # cells: two steps of a search that differ by less have arrived
 
 
 @seldom
-def forces_on(bodies, physics, box, i, zero):
-    """Force and torque on body i where it is, and its half of the virial of gaps with others."""
+def forces_on(bodies, physics, box, i, impulse, time):
+    """Force and torque on body i where it is, and its half of the virial of gaps with others.
+
+    Walls take the opposite of what they give it in a time.
+    """
+    zero = physics.zero
     kind, q, x = bodies.kind[i], load(bodies.rows, i, TURN, FOUR), load(bodies.rows, i, PLACE, zero)
     force = load(bodies.kinds, kind, FORCE_GIVEN, zero)
     torque, virial = (
@@ -77,7 +84,7 @@ def forces_on(bodies, physics, box, i, zero):
                 given, twist, apart = force_between(bodies, box, i, j, zero)
                 force, torque = added(force, given), added(torque, twist)
                 virial = added(virial, products(scaled(0.5, given), apart))
-        given, twist = force_of_walls(bodies, physics, i, x, q)
+        given, twist = force_of_walls(bodies, physics, i, (x, q), impulse, time)
         force, torque = added(force, given), added(torque, twist)
     return force, torque, virial
 
@@ -179,26 +186,30 @@ def on_part(bodies, part, x, q, r):
     return added(x, rotated(q, added_scaled(y, -c, n)))
 
 
-@where("(scaled(0.0, x), THREE)", bodies=lambda bodies: has_walls(bodies))
-def force_of_walls(bodies, physics, i, x, q):
-    """Force and torque on body i by the gap between it and the nearest wall."""
+@where("(scaled(0.0, pose[0]), THREE)", bodies=lambda bodies: has_walls(bodies))
+def force_of_walls(bodies, physics, i, pose, impulse, time):
+    """Force and torque on body i by the gap between it and the nearest wall, which takes the
+    opposite."""
+    x, q = pose
     (solid,) = bodies.solid
     depth, reach = of_kind(bodies, i, DEPTH), of_kind(bodies, i, RANGE)
     radius = of_kind(bodies, i, RADIUS)
     here = homed(solid, x)
-    distance, normal, _, _ = facing(solid, radius + reach, here)
+    distance, normal, surface, lever = facing(solid, radius + reach, here)
     force, torque = scaled(0.0, x), THREE
     if distance >= radius + reach:
         return force, torque
     if of_kind(bodies, i, IS_BALL) > 0.5:
-        return scaled(force_of_gap(depth, reach, distance - radius), normal), torque
+        force = scaled(force_of_gap(depth, reach, distance - radius), normal)
+        wall_takes(bodies, physics, impulse, surface, lever, scaled(-time, force))
+        return force, torque
     for a in range(int(of_kind(bodies, i, FIRST_PART)), int(of_kind(bodies, i, PARTS_END))):
         wall = added_scaled(here, -distance, normal)
         mine = wall
         # Projection on the part and on the wall in turn.
         for _ in range(MOST_TRIES):
             before, mine = mine, on_part(bodies, a, here, q, wall)
-            away, out, _, _ = facing(solid, radius + reach, homed(solid, mine))
+            away, out, surface, lever = facing(solid, radius + reach, homed(solid, mine))
             if away >= radius + reach:
                 break
             wall = added_scaled(mine, -away, out)
@@ -207,7 +218,15 @@ def force_of_walls(bodies, physics, i, x, q):
                 break
         given, arm = force_along(mine, wall, depth, reach), added_scaled(mine, -1.0, here)
         force, torque = added(force, given), added(torque, whole_spin(outer(arm, given)))
+        wall_takes(bodies, physics, impulse, surface, lever, scaled(-time, given))
     return force, torque
+
+
+@scalar
+def wall_takes(bodies, physics, impulse, surface, lever, p):
+    """Add an impulse to what a surface took; one rank counts for all."""
+    if counts_for_all(bodies):
+        add_recoil(impulse, surface, lever, p, momentum_scale(physics))
 
 
 def has_walls(bodies):

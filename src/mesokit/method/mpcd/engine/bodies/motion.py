@@ -52,7 +52,7 @@ ROUNDS_OF_TURN = 16
 
 
 @stage
-def begin_step(worker, now, physics, bodies):
+def begin_step(worker, now, physics, fluid, bodies):
     """Velocities of bodies at t + dt without the fluid, and their motion t -> t + dt.
 
     Place and orientation stay those at t until the fluid has flown.
@@ -72,14 +72,14 @@ def begin_step(worker, now, physics, bodies):
     # Kick, drift, kick: forces at the beginning of a sub-step are those at the end of the last.
     # Threads meet after each drift, because forces need the places of all bodies.
     for i in range(first, last):
-        kick_body(worker, now, physics, bodies, i, 0.5 * time)
+        kick_body(worker, now, physics, fluid, bodies, i, 0.5 * time)
     barrier(worker)
     for k in range(n):
         for i in range(first, last):
             drift_body(bodies, physics, i, time)
         barrier(worker)
         for i in range(first, last):
-            kick_body(worker, now, physics, bodies, i, (0.5 if k == n - 1 else 1.0) * time)
+            kick_body(worker, now, physics, fluid, bodies, i, (0.5 if k == n - 1 else 1.0) * time)
         barrier(worker)
     for i in range(first, last):
         begin_motion(bodies, physics, i)
@@ -88,11 +88,11 @@ def begin_step(worker, now, physics, bodies):
 
 
 @seldom
-def kick_body(worker, now, physics, bodies, i, time):
+def kick_body(worker, now, physics, fluid, bodies, i, time):
     """Change of the velocities of body i by the forces where it is."""
     rows, kind, zero = bodies.rows, bodies.kind[i], physics.zero
-    box = box_at_start(now, physics)
-    force, torque, virial = forces_on(bodies, physics, box, i, zero)
+    box, impulse = box_at_start(now, physics), fluid.taken.impulse[worker.thread]
+    force, torque, virial = forces_on(bodies, physics, box, i, impulse, time)
     if now.flags & MEASURE_STRESS:
         add_gaps(worker.thread, physics, bodies, scaled(time, virial))
     part = time / physics.timestep

@@ -13,7 +13,7 @@ from mesokit.method.mpcd.engine.where import where
 @inner
 def stream_with_bodies(worker, now, physics, fluid, bodies):
     """The collision at t, and the flight t -> t + dt of bodies and fluid."""
-    begin_step(worker, now, physics, bodies)  # forces; one rigid motion of each body
+    begin_step(worker, now, physics, fluid, bodies)  # forces; one rigid motion of each body
     stream_around_bodies(worker, now, physics, fluid, bodies)  # particles that no body can reach
     kick_nearby(worker, now, physics, fluid, bodies)  # counter-forces on the fluid near bodies
     reflect_all(worker, now, physics, fluid, bodies)  # all others: hits, one reflection a body
