@@ -27,7 +27,6 @@ FORCE, TORQUE = "m a/tau^2", "m a^2/tau^2"
 NUMBERS = 2**20  # of the time series, for all bodies together
 MOST_ROWS = 4096
 NAMED = 8  # bodies with comparisons of their own
-WITHOUT_GAPS = "approximate: without the repulsion of solids and bodies that move"
 
 
 @component
@@ -221,8 +220,6 @@ class ForcesAccumulator(BlockAccumulator):
                 error = known
             else:
                 note = joined(note, short)
-            if any(kind.interaction.depth for kind in self.case.bodies):
-                note = joined(WITHOUT_GAPS, note)
             what = f"force on all solids along {AXES[axis]}"
             yield Comparison(what, value, error, total[axis], FORCE, note)
             if few and len(self.bodies) > 1 and np.isfinite(total[axis]):
