@@ -55,10 +55,8 @@ from mesokit.scalar.fixed_point import add_integers, added_quanta, floats, integ
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added, added_scaled, outer, scaled
 
-NUMBER, MOMENTS = (
-    0,
-    1,
-)  # in the sums of a body: particles in its ball, moments of those in its shell
+# In the sums of a body: particles in its ball, and moments of those in its shell.
+NUMBER, MOMENTS = 0, 1
 LEAST = 1e-9  # of the size of a shell: moments below are those of one particle, or of a line
 
 
