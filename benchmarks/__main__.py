@@ -2,7 +2,7 @@
 
 python -m benchmarks [--rounds 5] [--seconds 3] [--only PART,PART]
 
-Parts: peers, ranks, cost, solids, bonded, solutes, event-driven, soft,
+Parts: peers, ranks, cost, solids, bodies, bonded, solutes, event-driven, soft,
 contact-dynamics, flocks, kinetic-monte-carlo, observe, memory, startup.
 """
 
@@ -14,6 +14,7 @@ import platform
 from pathlib import Path
 
 from benchmarks import (
+    bodies,
     bonded,
     contact_dynamics,
     costs,
@@ -32,6 +33,7 @@ PARTS = {
     "ranks": ranks.speed,
     "cost": costs.rules,
     "solids": costs.solids,
+    "bodies": bodies.table,
     "bonded": bonded.table,
     "solutes": solutes.table,
     "event-driven": event_driven.table,

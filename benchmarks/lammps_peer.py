@@ -50,13 +50,29 @@ def measure(workload: str, ranks: int, seconds: float) -> float:
     name, length, dimension = WORKLOADS[workload]
     particles = 10 * length**dimension
     steps = max(20, int(seconds * ranks * 18e6 / particles))
+    told = _run(name, ranks, *SETTINGS, "-var", "L", str(length), "-var", "steps", str(steps))
+    if workload == "W3":
+        return float(re.findall(r"RATE ([\d.]+)", told)[-1]) * 1e6
+    took = float(re.findall(r"Loop time of ([\d.e+-]+)", told)[-1])
+    return particles * steps / took
+
+
+def measure_spheres(along: int, length: int, ranks: int, seconds: float) -> float:
+    """Particle-steps of the fluid per second, around so many spheres along each axis."""
+    steps = max(20, int(seconds * ranks * 18e6 / (10 * length**3)))
+    given = {"k": along, "L": length, "steps": steps, "warm": 50}
+    variables = [word for key, value in given.items() for word in ("-var", key, str(value))]
+    told = _run("in.lammps_spheres", ranks, *variables, "-log", "none")
+    return float(re.findall(r"RATE ([\d.e+]+)", told)[-1]) * 1e6
+
+
+def _run(name: str, ranks: int, *options: str) -> str:
+    """What LAMMPS says of an input."""
     folder = Path(sys.executable).parent
     command = [str(folder / "mpiexec"), "-n", str(ranks), str(folder / "lmp"), "-in", name]
-    command += [*SETTINGS, "-var", "L", str(length), "-var", "steps", str(steps)]
-    done = subprocess.run(command, cwd=INPUTS, env=environment(), capture_output=True, text=True)
+    done = subprocess.run(
+        [*command, *options], cwd=INPUTS, env=environment(), capture_output=True, text=True
+    )
     if done.returncode != 0:
         raise RuntimeError(f"LAMMPS failed: {done.stdout[-500:]} {done.stderr[-500:]}")
-    if workload == "W3":
-        return float(re.findall(r"RATE ([\d.]+)", done.stdout)[-1]) * 1e6
-    took = float(re.findall(r"Loop time of ([\d.e+-]+)", done.stdout)[-1])
-    return particles * steps / took
+    return done.stdout

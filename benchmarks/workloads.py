@@ -52,7 +52,8 @@ def case(name: str) -> Case:
     W1@48 is W1 with another length of the box. W5 is a 2D fluid of 400 x 50 cells with a
     thermostat: empty, or a channel with -plates, with -disks that cover 10 % of the area as well,
     or with these -sampled. B-dimers-5 and B-decamers-5 are fluids of molecules, by 5 sub-steps,
-    S-1000-10 a thousand beads of solutes alone by 10, C-5000-10 5,000 of them in a fluid.
+    S-1000-10 a thousand beads of solutes alone by 10, C-5000-10 5,000 of them in a fluid. D-3-fill
+    has 3^3 spheres that move, with virtual particles.
     """
     if name.startswith("B-"):
         from benchmarks import bonded
@@ -80,6 +81,11 @@ def case(name: str) -> Case:
     if name.startswith("C-"):
         _, beads, substeps = name.split("-")
         return _chains(int(beads), int(substeps))
+    if name.startswith("D-"):
+        from benchmarks import bodies
+
+        _, along, virtual = name.split("-")
+        return bodies.case(int(along), virtual)
     if name.startswith("W5"):
         return _channel(name.partition("-")[2])
     workload, _, variant = name.partition("-")
