@@ -95,7 +95,7 @@ DRIVEN = (
     body("disk", 2, force=(60, 0), frame="body", counter=CounterForce(at=(-4, 0))),
     body("rectangle", 2, torque=200, counter=CounterForce(shell=1.5)),
 )
-# Three of them are compiled for other tests too
+# All of them are compiled for other tests too
 SHEARED = {"collision": SRDPlusA(angle=90), "thermostat": MaxwellBoltzmann()}
 KINDS = {
     "2D": {"size": ROOM[2], "bodies": SOME[2]},
@@ -185,9 +185,7 @@ def test_a_body_in_shear_turns_with_the_fluid():
 def test_the_fluid_nearby_takes_the_opposite_of_forces_and_torques():
     """Momentum stays. The swimmer goes ahead, the rotor turns, and the mean force is 0."""
     # a box that hardly slides is of the same compiled kind as "sheared"
-    fluid = make_fluid(
-        ROOM[2], bodies=DRIVEN, thermostat=MaxwellBoltzmann(), timestep=0.2, shear_rate=1e-13
-    )
+    fluid = make_fluid(ROOM[2], bodies=DRIVEN, timestep=0.2, shear_rate=1e-13, **SHEARED)
     momentum = fluid.totals()[1]
     fluid.advance(100)
     speeds, forces, begun = [], [], fluid.bodies.angles[1, 2]
