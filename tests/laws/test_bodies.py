@@ -92,8 +92,8 @@ def test_the_pressure_around_bodies_is_that_of_the_free_fluid(name, virtual):
 
 # A dumbbell swimmer, which pushes the fluid behind it, and a rotor.
 DRIVEN = (
-    body("disk", 2, force=(60, 0), frame="body", counter=CounterForce(at=(-4, 0))),
-    body("rectangle", 2, torque=200, counter=CounterForce(shell=1.5)),
+    body("disk", 2, force=(40, 0), frame="body", counter=CounterForce(at=(-4, 0))),
+    body("rectangle", 2, torque=80, counter=CounterForce(shell=1.5)),
 )
 # All of them are compiled for other tests too
 SHEARED = {"collision": SRDPlusA(angle=90), "thermostat": MaxwellBoltzmann()}

@@ -43,8 +43,9 @@ def squares_of_order(headings: Array) -> tuple[float, float]:
 
     >>> squares_of_order(np.array([[1.0, 0.0], [-1.0, 0.0]]))
     (0.0, 1.0)
-    >>> squares_of_order(np.eye(3))  # along three axes
-    (0.33333333333333326, 0.0)
+    >>> polar, nematic = squares_of_order(np.eye(3))  # along three axes
+    >>> f"{polar:.3f}, {nematic:.3f}"
+    '0.333, 0.000'
     """
     d, mean = headings.shape[1], headings.mean(axis=0)
     tensor = np.einsum("ni,nj->ij", headings, headings) / len(headings)
