@@ -10,7 +10,7 @@ which no particle is there neither the body nor the fluid gets anything.
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
-from mesokit.method.mpcd.engine.bodies.hits import moments_at, take_impulses
+from mesokit.method.mpcd.engine.bodies.hits import give_opposite, moments_at, take_impulses
 from mesokit.method.mpcd.engine.bodies.motion import end_turn
 from mesokit.method.mpcd.engine.bodies.near import (
     bodies_near,
@@ -46,14 +46,13 @@ from mesokit.method.mpcd.engine.bodies.state import (
     store,
     swept,
 )
-from mesokit.method.mpcd.engine.bodies.stress import AFTER, add_impulse
-from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, STREAM
+from mesokit.method.mpcd.engine.cpu.groups import STREAM
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
 from mesokit.method.mpcd.engine.cpu.strips.one import mass_in_lane
 from mesokit.method.mpcd.engine.domains.messages.bodies import add_others
-from mesokit.scalar.fixed_point import add_integers, added_quanta, floats, integers, opposite
+from mesokit.scalar.fixed_point import add_integers, added_quanta, floats, integers
 from mesokit.scalar.jit import by_type, scalar, seldom
-from mesokit.scalar.vector import added, added_scaled, outer, scaled
+from mesokit.scalar.vector import added, added_scaled, scaled
 
 # In the sums of a body: particles in its ball, and moments of those in its shell.
 NUMBER, MOMENTS = 0, 1
@@ -198,13 +197,7 @@ def kick_if_nearby(now, physics, fluid, bodies, thread, j):
         units = added_quanta(given, scale, integers(r))
         v = added_scaled(load(values, j, START_V, r), 1.0 / (scale * m), floats(units))
         store(values, j, START_V, v)
-        p = scaled(1.0 / scale, floats(units))
-        if now.flags & MEASURE_STRESS:
-            add_impulse(thread, physics, bodies, AFTER, s, p)
-        turn = scaled(1.0 / bodies.lever, outer(s, p))
-        taken = bodies.taken[thread, i]
-        add_integers(taken, opposite(units))
-        add_integers(taken[len(s) :], opposite(added_quanta(turn, scale, integers(turn))))
+        give_opposite(thread, now, physics, bodies, i, s, units)
 
 
 @seldom

@@ -315,17 +315,23 @@ def reflect(worker, now, physics, fluid, bodies, j):
     units = added_quanta(scaled(-2.0 * m, g), scale, integers(s))
     v = added_scaled(v, 1.0 / (scale * m), floats(units))
     store(values, j, V, v)
-    p = scaled(1.0 / scale, floats(units))
-    if now.flags & MEASURE_STRESS:
-        add_impulse(thread, physics, bodies, AFTER, s, p)
-    turn = scaled(1.0 / bodies.lever, outer(s, p))
-    taken = bodies.taken[thread, i]
-    add_integers(taken, opposite(units))
-    add_integers(taken[len(s) :], opposite(added_quanta(turn, scale, integers(turn))))
+    give_opposite(thread, now, physics, bodies, i, s, units)
     # A flight that does not lead away from the moving surface ends on it: it is put there later.
     mean = load(bodies.rows, i, MEAN_VELOCITY, s), load(bodies.rows, i, MEAN_SPIN, THREE)
     rise = dot(normal, added_scaled(v, -1.0, rigid_velocity(mean[0], mean[1], s, speed)))
     bodies.numbers[thread, j, LEFT] = NO_BODY if rise > 0.0 else i
+
+
+@scalar
+def give_opposite(thread, now, physics, bodies, i, s, units):
+    """Note the opposite of the impulse on a particle at an arm, in quanta, for body i to take."""
+    scale, taken = momentum_scale(physics), bodies.taken[thread, i]
+    p = scaled(1.0 / scale, floats(units))
+    if now.flags & MEASURE_STRESS:
+        add_impulse(thread, physics, bodies, AFTER, s, p)
+    turn = scaled(1.0 / bodies.lever, outer(s, p))
+    add_integers(taken, opposite(units))
+    add_integers(taken[len(s) :], opposite(added_quanta(turn, scale, integers(turn))))
 
 
 @seldom

@@ -3,23 +3,53 @@
 Without bodies this costs nothing: it is another pass (see `cpu.sweep`).
 """
 
+import math
+
 import numpy as np
 
 from mesokit.case.box import SLIDING
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
-from mesokit.method.mpcd.engine.bodies.near import choose_near_bodies
+from mesokit.method.mpcd.engine.bodies import state
+from mesokit.method.mpcd.engine.bodies.near import (
+    ALLOWANCE,
+    BEYOND,
+    PARTS,
+    bodies_near,
+    body_near,
+    box_at_start,
+    cube_of,
+    list_of,
+    takes_counter,
+)
 from mesokit.method.mpcd.engine.bodies.state import (
+    BODY,
+    CELL,
     COUNT,
+    EVERY_BODY,
+    GOING,
     IMAGE,
+    IS_BALL,
     LANE,
+    LEFT,
+    MEAN_VELOCITY,
+    NO_BODY,
+    PLACE,
     PUT_BACK,
+    RADIUS,
     SECOND_HITS,
     START,
+    START_V,
     STILL_HITTING,
+    STRIDE,
+    TIME,
+    TURN,
     R,
     V,
+    image_near,
     load,
+    of_kind,
+    store,
 )
 from mesokit.method.mpcd.engine.bodies.stress import take_near_flux
 from mesokit.method.mpcd.engine.cpu import stages
@@ -27,14 +57,21 @@ from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREA
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.one import put_one
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
 from mesokit.method.mpcd.engine.cpu.sweep import add_strip_flux
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
 from mesokit.method.mpcd.engine.domains.messages.migrate import note_migrants
 from mesokit.method.mpcd.engine.domains.messages.shared import shares
+from mesokit.method.mpcd.engine.embedded.near import note
+from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
 from mesokit.method.mpcd.engine.where import where
-from mesokit.scalar.jit import scalar
+from mesokit.method.mpcd.streaming import halfway, vector
+from mesokit.scalar.intrinsics import with_item
+from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.vector import added_scaled, dot, scaled
 
 KEEP, RESTORE = 0, 1
+RADIUS_OF = 6  # row of the flights of candidates, after places and velocities
 WAITING = -1  # the cell of a particle that has not flown yet
 
 
@@ -103,6 +140,154 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
             for j in range(near):
                 cell[chosen[j]] = WAITING
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
+
+
+@scalar
+def longest_flight(bodies, physics, r, v):
+    """The longest path that a particle can fly in a timestep."""
+    a, time = vector(halfway(physics.field, r, v, physics.timestep), r), physics.timestep
+    path = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
+    return path + bodies.further
+
+
+@scalar
+def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
+    """Put the particles of strip s that may meet a body on the list of this thread.
+
+    Their lanes become the first entries of `marks`; returns their number.
+    """
+    zero, thread, candidates, chosen = physics.zero, worker.thread, 0, 0
+    time, d, box, allowance = (
+        physics.timestep,
+        len(zero),
+        box_at_start(now, physics),
+        bodies.work[thread, ALLOWANCE],
+    )
+    cubes, any_near = bodies.cubes[thread], np.int32(0)
+    # Coarse test of all lanes at t, before the flight, by what is clear around cubes. Three loops,
+    # of which the first and the last become vectors: between them is the gather from the table.
+    for i in range(LANES):
+        cubes[i] = cube_of(bodies, box, load_particle(strip, i, 0, zero))
+    for i in range(LANES):
+        cubes[i] = np.int32(bodies.clear[np.uint32(cubes[i])])
+    for i in range(LANES):
+        r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+        clear = float(cubes[i]) * (1.0 / PARTS) - allowance
+        cubes[i] = np.int32(not longest_flight(bodies, physics, r, v) < clear)
+        any_near |= cubes[i]
+    # Compact the lanes of candidates to the front, again without branches.
+    for i in range(count if any_near != 0 else 0):
+        marks[i] = np.int64(cubes[i])
+    for i in range(count if any_near != 0 else 0):
+        mark = marks[i]
+        marks[candidates] = i
+        candidates += mark
+    # Most candidates are near one ball alone, and fly past it: that is seen in a loop over vectors.
+    flights = bodies.flights[thread]
+    for j in range(candidates):
+        r, v = load_particle(strip, marks[j], 0, zero), load_particle(strip, marks[j], d, zero)
+        cubes[j] = np.int32(store_flight(bodies, physics, box, r, v, allowance, flights, j))
+    for j in range(candidates):
+        y, w = load_flight(flights, 0, j, zero), load_flight(flights, d, j, zero)
+        flights[RADIUS_OF, j] = 1.0 if meets_ball(flights[RADIUS_OF, j], y, w, time) else 0.0
+    # Exact test of the few others, by the bodies on their lists.
+    for j in range(candidates):
+        if flights[RADIUS_OF, j] == 0.0:
+            continue
+        i, cell = marks[j], np.int64(cubes[j])
+        r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+        path = longest_flight(bodies, physics, r, v)
+        if may_hit(bodies, physics, box, cell, r, v, path) or takes_counter(bodies, box, cell, r):
+            n = bodies.counters[thread, COUNT]
+            if n == bodies.values.shape[1]:
+                note(bodies.faults[thread], now.counter.step, TOO_MANY, 0)
+                break
+            store(bodies.values[thread], n, START, r)
+            store(bodies.values[thread], n, START_V, v)
+            bodies.values[thread, n, TIME] = 0.0
+            bodies.numbers[thread, n, LANE] = s * len(marks) + i
+            bodies.numbers[thread, n, CELL] = cell
+            bodies.numbers[thread, n, BODY] = NO_BODY
+            bodies.numbers[thread, n, LEFT] = NO_BODY
+            bodies.numbers[thread, n, GOING] = 1
+            bodies.counters[thread, COUNT] = n + 1
+            marks[chosen] = i
+            chosen += 1
+    return chosen
+
+
+@seldom
+def may_hit(bodies, physics, box, cell, r, v, path):
+    """Whether a particle at r, which flies so far, may meet a body on the list of its cell.
+
+    It follows from places and velocities alone. A ball that is larger by what its motion may still
+    change must lie on the straight flight of a particle that no force and no wall bends.
+    """
+    time = physics.timestep
+    for n in range(bodies_near(bodies, cell)):
+        i = body_near(bodies, cell, n)
+        x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
+        away, stride, kind = added_scaled(r, -1.0, x), bodies.rows[i, STRIDE], bodies.kind[i]
+        if bodies.kinds[kind, IS_BALL] > 0.5:
+            radius, w = flight_by_ball(bodies, i, v, speed, path, time)
+            if meets_ball(radius, away, w, time):
+                return True
+        else:
+            q = load(bodies.rows, i, TURN, state.FOUR)
+            c, _ = state.clearance(bodies, kind, state.rotated_back(q, away))
+            if not c > path + stride:
+                return True
+    return False
+
+
+@scalar
+def flight_by_ball(bodies, i, v, speed, path, time):
+    """Radius of a ball that a flight must enter to hit body i, and the velocity of the flight.
+
+    A flight that is bent may go anywhere on its path: it starts in a larger ball, or meets none.
+    """
+    radius = of_kind(bodies, i, RADIUS) + bodies.rows[i, STRIDE]
+    u = state.with_shear(load(bodies.rows, i, MEAN_VELOCITY, v), speed)
+    straight = path * path <= time * time * dot(v, v) * (1.0 + 1e-12)
+    part = 1.0 if straight else 0.0
+    return radius + (1.0 - part) * path, scaled(part, added_scaled(v, -1.0, u))
+
+
+@scalar
+def meets_ball(radius, y, w, time):
+    """Whether a straight flight from y enters a ball about 0 within a time, or starts in it."""
+    approach, square = dot(y, w), dot(w, w)
+    # The distance is least at the time -approach/square, or at an end of the flight.
+    end = min(max(-approach / max(square, 1e-300), 0.0), time)
+    return dot(y, y) - radius * radius + end * (2.0 * approach + end * square) <= 0.0
+
+
+@scalar
+def store_flight(bodies, physics, box, r, v, allowance, flights, j):
+    """Note the flight of a candidate by the ball that is alone near it; the cell whose list holds.
+
+    Where no ball is, or the particle takes a counter-force, it is one that meets the ball.
+    """
+    y, w, radius, path = r, v, BEYOND, longest_flight(bodies, physics, r, v)
+    cell = list_of(bodies, box, r, path + allowance)
+    if cell != EVERY_BODY and bodies.near_count[cell] == 1:
+        i = np.int64(bodies.near[cell, 0])
+        if of_kind(bodies, i, IS_BALL) > 0.5 and not takes_counter(bodies, box, cell, r):
+            x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
+            radius, w = flight_by_ball(bodies, i, v, speed, path, physics.timestep)
+            y = added_scaled(r, -1.0, x)
+    for k in range(len(r)):
+        flights[k, j], flights[len(r) + k, j] = y[k], w[k]
+    flights[RADIUS_OF, j] = radius
+    return cell
+
+
+@scalar
+def load_flight(flights, first, j, zero):
+    """The place or the velocity of a candidate."""
+    for k in range(len(zero)):
+        zero = with_item(zero, k, flights[first + k, j])
+    return zero
 
 
 @scalar
