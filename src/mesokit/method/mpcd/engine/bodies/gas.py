@@ -206,24 +206,33 @@ def fill_cell_of_body(worker, now, physics, bodies, at, cell_key):
 def gas_together(thread, counter, physics, bodies, at, key):
     """All particles of the gas of a ball in a cell as one, as heavy as they are; its moments.
 
-    The plane that stands for the surface lies as deep as the sphere does on the mean over the cell.
-    That gives their number. The place is that of one of them: with the mean place, the gas would
-    have too little of a moment of inertia, by 8 % of its own at a radius of 2.
+    The place is that of one of them: with the mean place, the gas would have too little of a moment
+    of inertia, by 8 % of its own at a radius of 2.
     """
-    middle, radius, mean = at.middle, of_kind(bodies, at.body, RADIUS), mean_gas(bodies, at.body)
-    away = added_scaled(middle, -1.0, at.centre)
-    far = math.sqrt(dot(away, away))
-    normal, sunk = scaled(1.0 / max(far, 1e-9), away), (len(middle) - 1) / (24.0 * radius)
-    mean, _, place = cut_at(mean, far - radius + sunk, normal, away, scaled(0.0, away))
+    away, radius = added_scaled(at.middle, -1.0, at.centre), of_kind(bodies, at.body, RADIUS)
+    mean, place = mean_in_ball(mean_gas(bodies, at.body), radius, away)
     number, draw = poisson_number(mean, counter, BODY_GAS_NUMBER, key), 0
     if number == 0:
-        return no_moments(middle)
+        return no_moments(away)
     while draw < MOST_DRAWS:
         s = uniform_arm(counter, at, key, draw)
         if dot(s, s) < radius * radius:
             place, draw = s, MOST_DRAWS
         draw += 1
     return put_gas(thread, counter, physics, bodies, at, GasDraw(key, 0, number, place))
+
+
+@scalar
+def mean_in_ball(density, radius, away):
+    """Mean number of particles in the part of a cell that is in a ball, and the mean arm there, by
+    the arm of the middle of the cell. None where all of the cell is in the ball.
+
+    A plane stands for the sphere. It lies as deep as the sphere does on the mean over the cell.
+    """
+    far, sunk = math.sqrt(dot(away, away)), (len(away) - 1) / (24.0 * radius)
+    normal = scaled(1.0 / max(far, 1e-9), away)
+    mean, _, place = cut_at(density, far - radius + sunk, normal, away, scaled(0.0, away))
+    return mean, place
 
 
 @scalar
