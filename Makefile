@@ -13,7 +13,7 @@ READY := .venv/ready
   test-gpu bench-gpu validate parts clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
-	@echo "make test      run the tests but the long ones: some minutes"
+	@echo "make test      run the tests but the long ones: half an hour on two cores"
 	@echo "make test-long run the long ones; make test-all runs all, with further kinds on devices"
 	@echo "make durations print the slowest tests of the last time, and what each folder takes"
 	@echo "make quick     run the tests that simulate nothing: cases, theory, statistics, documents"
