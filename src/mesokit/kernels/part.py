@@ -26,6 +26,7 @@ from numba.core.environment import Environment
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
 
+from mesokit.kernels import quicker  # noqa: F401  what numba compiles is compiled sooner
 from mesokit.kernels.kept import counts, kept, version_line, versions
 from mesokit.kernels.library import STAGE, PartLibrary, StageLibrary, loaded, missing, needs_below
 from mesokit.kernels.made_of import Unknown, code_of, describe_type, digest, needs_of

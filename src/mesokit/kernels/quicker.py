@@ -1,0 +1,59 @@
+"""Numba's slowest steps of translating a function, done once or in fewer calls.
+
+Most of the time to compile a part goes to numba's own Python. Two answers that it works out again
+and again are given at once here; what is compiled stays the same.
+"""
+
+from typing import Any
+
+from numba.core import ir
+from numba.core.types import Function
+from numba.core.types.functions import BaseFunction
+
+_resolve = BaseFunction.get_call_type
+
+
+def resolve_once(self: Any, context: Any, args: Any, kws: Any) -> Any:
+    """The signature of a call of a built-in function, such as a sum of two numbers.
+
+    Numba tries all signatures that it has for such a function at every call, and words an error for
+    each that does not fit. New signatures make another object of the function.
+    """
+    if kws:
+        return _resolve(self, context, args, kws)
+    known = self.__dict__.setdefault("_resolved", {})
+    asked = id(context), args  # contexts live as long as the process
+    found = known.get(asked)
+    if found is None:
+        found = known[asked] = _resolve(self, context, args, kws)
+    return found
+
+
+def list_variables(self: Any, value: Any) -> list[ir.Var]:
+    """The variables in a value of numba's intermediate form, in their order."""
+    found: list[ir.Var] = []
+    _collect(value, found)
+    return found
+
+
+PLAIN = {str, int, float, bool, type(None), ir.Loc}  # most values: these have no variables
+
+
+def _collect(value: Any, found: list[ir.Var]) -> None:
+    kind = type(value)
+    if kind is ir.Var:
+        found.append(value)
+    elif kind in PLAIN:
+        return
+    elif isinstance(value, ir.Inst):
+        found.extend(value.list_vars())
+    elif isinstance(value, dict):
+        for one in value.values():
+            _collect(one, found)
+    elif isinstance(value, list | tuple):
+        for one in value:
+            _collect(one, found)
+
+
+Function.get_call_type = resolve_once
+ir.Inst._rec_list_vars = list_variables
