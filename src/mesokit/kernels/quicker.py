@@ -55,5 +55,5 @@ def _collect(value: Any, found: list[ir.Var]) -> None:
             _collect(one, found)
 
 
-Function.get_call_type = resolve_once
+Function.get_call_type = resolve_once  # type: ignore[method-assign]
 ir.Inst._rec_list_vars = list_variables
