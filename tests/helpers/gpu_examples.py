@@ -263,6 +263,7 @@ def physics(d: int, **parts: Any) -> Physics:
         "coefficients": (),
         "terms": (),
         "scales": vec(d),
+        "momentum_scale": 1.0,
         "stress_scale": 1.0,
     }
     return Physics(**(plain | parts))

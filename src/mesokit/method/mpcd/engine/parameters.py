@@ -38,6 +38,7 @@ def parameters_of(numbers: Numbers, held: Held | None = None) -> Parameters:
         coefficients=(0.0,) * numbers.coefficient_count,
         terms=(0,) * len(numbers.scales),
         scales=numbers.scales,
+        momentum_scale=numbers.scales[0],
         stress_scale=numbers.units["stress"],
     )
     return Parameters(physics, (links, tables))

@@ -64,7 +64,7 @@ from mesokit.method.mpcd.engine.bodies.stress import (
 )
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS
-from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
+from mesokit.method.mpcd.engine.cpu.physics import momentum_scale, of_bodies, of_gas
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import needs_energy
 from mesokit.method.mpcd.engine.cpu.strips.rows import add_values, load_values
 from mesokit.method.mpcd.engine.domains.messages.bodies import add_others, is_own_cell
@@ -107,12 +107,13 @@ def draw_all_gas(worker, now, physics, fluid, bodies):
     for i in range(len(bodies.rows)):
         if of_kind(bodies, i, FILLED) > 0.0:
             for copy in range(3 if slides(now.box) else 1):
-                draw_gas(worker, now, physics, fluid, bodies, i, copy - 1 if slides(now.box) else 0)
+                up = copy - 1 if slides(now.box) else 0
+                draw_gas(worker, now, of_gas(physics), fluid, bodies, i, up)
     barrier(worker)
     add_others(worker, bodies, bodies.sums, 0)
     low, high = share(len(bodies.rows), thread, worker.threads)
     for i in range(low, high):
-        take_noise(worker, physics, bodies, i)
+        take_noise(worker, of_bodies(physics), bodies, i)
     barrier(worker)
     bodies.sums[thread] = 0
     for n in range(here[GAS_COUNT]):

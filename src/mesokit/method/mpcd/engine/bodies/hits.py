@@ -65,7 +65,6 @@ from mesokit.method.mpcd.engine.bodies.state import (
     store,
 )
 from mesokit.method.mpcd.engine.bodies.stress import AFTER, add_impulse, add_near_flux
-from mesokit.method.mpcd.engine.bodies.sweep import note_all_migrants, put_all_back
 from mesokit.method.mpcd.engine.bodies.swim import squirming
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
@@ -135,9 +134,6 @@ def reflect_all(worker, now, physics, fluid, bodies):
     finish_flights(worker, now, physics, fluid, bodies)
     if now.flags & MEASURE_STRESS:
         add_near_flux(thread, physics, now, fluid, bodies)
-    put_all_back(worker, now, physics, fluid, bodies)
-    note_all_migrants(worker, now, physics, fluid)
-    barrier(worker)
 
 
 @scalar

@@ -6,32 +6,34 @@ from mesokit.method.mpcd.engine.bodies.gas import draw_all_gas, take_recoil
 from mesokit.method.mpcd.engine.bodies.hits import reflect_all
 from mesokit.method.mpcd.engine.bodies.motion import begin_step
 from mesokit.method.mpcd.engine.bodies.near import kicks_fluid
-from mesokit.method.mpcd.engine.bodies.sweep import stream_around_bodies
+from mesokit.method.mpcd.engine.bodies.sweep import put_all_back, stream_around_bodies
+from mesokit.method.mpcd.engine.cpu.physics import of_bodies, of_cells, of_particles
 from mesokit.method.mpcd.engine.where import where
 
 
 @inner
 def stream_with_bodies(worker, now, physics, fluid, bodies):
     """The collision at t, and the flight t -> t + dt of bodies and fluid."""
-    begin_step(worker, now, physics, fluid, bodies)  # forces; one rigid motion of each body
+    begin_step(worker, now, of_bodies(physics), fluid, bodies)  # forces; one rigid motion each
     stream_around_bodies(worker, now, physics, fluid, bodies)  # particles that no body can reach
     kick_nearby(worker, now, physics, fluid, bodies)  # counter-forces on the fluid near bodies
-    reflect_all(worker, now, physics, fluid, bodies)  # all others: hits, one reflection a body
+    reflect_all(worker, now, of_bodies(physics), fluid, bodies)  # all others: one reflection a body
+    put_all_back(worker, now, of_particles(physics), fluid, bodies)  # their cells and sums
 
 
 @where(bodies=kicks_fluid)
 def kick_nearby(worker, now, physics, fluid, bodies):
     """Forces and torques on bodies that the fluid nearby takes back."""
-    kick_fluid(worker, now, physics, fluid, bodies)
+    kick_fluid(worker, now, of_bodies(physics), fluid, bodies)
 
 
 @where(bodies=len)
 def fill_bodies(worker, now, physics, fluid, bodies):
     """Virtual particles at t + dt in the cells that bodies cut."""
-    draw_all_gas(worker, now, physics, fluid, bodies)
+    draw_all_gas(worker, now, of_cells(physics), fluid, bodies)
 
 
 @where(bodies=len)
 def recoil_bodies(worker, now, physics, fluid, bodies):
     """Give bodies what the collision gives their virtual particles."""
-    take_recoil(worker, now, physics, fluid, bodies)
+    take_recoil(worker, now, of_cells(physics), fluid, bodies)

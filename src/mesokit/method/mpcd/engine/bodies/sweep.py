@@ -10,6 +10,7 @@ import numpy as np
 from mesokit.case.box import SLIDING
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
+from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.near import (
     ALLOWANCE,
@@ -55,6 +56,7 @@ from mesokit.method.mpcd.engine.bodies.stress import take_near_flux
 from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
+from mesokit.method.mpcd.engine.cpu.physics import of_bodies
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.one import put_one
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
@@ -116,7 +118,8 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
             if measured and not now.flags & STREAM:
                 add_strip_flux(physics, now.box, now.old, strip, lanes, tensor[1, s])
         if now.flags & STREAM:
-            near = choose_near_bodies(worker, now, physics, bodies, strip, s, lanes, chosen)
+            plain = of_bodies(physics)
+            near = choose_near_bodies(worker, now, plain, bodies, strip, s, lanes, chosen)
             look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
             left = stages.stream_strip(physics, strip, clear, marks)
             if left != 0:
@@ -292,12 +295,16 @@ def load_flight(flights, first, j, zero):
 
 @scalar
 def put_all_back(worker, now, physics, fluid, bodies):
-    """All particles of this thread's list, at t + dt."""
+    """All particles of this thread's list at t + dt, with the terms for their new cells."""
+    if not now.flags & STREAM:
+        return
     thread, values, zero = worker.thread, bodies.values[worker.thread], physics.zero
     for j in range(bodies.counters[thread, COUNT]):
         r, v = load(values, j, R, zero), load(values, j, V, zero)
         start = load(values, j, START, zero)
         put_one(worker, now, physics, fluid, bodies.numbers[thread, j, LANE], start, r, v)
+    note_all_migrants(worker, now, physics, fluid)
+    barrier(worker)
 
 
 @where(fluid=shares)

@@ -25,6 +25,7 @@ class Physics(NamedTuple):
     coefficients: tuple  # as long as what a particle needs of its cell in order to collide
     terms: tuple  # as long as what it adds to the sums of its cell
     scales: tuple  # whole numbers per unit of each of these terms; momentum comes first
+    momentum_scale: float  # whole numbers per unit of momentum
     stress_scale: float  # whole numbers per unit of m v^2 in the stress
 
 
@@ -32,12 +33,15 @@ class Physics(NamedTuple):
 of_particles = without("thermostat")
 of_cells = without("field", "solid", "molecule")
 of_walls = without("thermostat", "field", "molecule")
+_OF_CELLS = "rule", "thermostat", "coefficients", "terms", "scales"
+of_bodies = without(*_OF_CELLS, "molecule", "energy")
+of_gas = without(*_OF_CELLS, "molecule", "field", "solid")
 
 
 @scalar
 def momentum_scale(physics):
     """Whole numbers per unit of momentum in fixed-point sums."""
-    return physics.scales[0]
+    return physics.momentum_scale
 
 
 with_field = replaced("field")
