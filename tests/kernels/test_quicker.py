@@ -1,6 +1,9 @@
 """What numba answers in fewer calls is what it answered before."""
 
 import operator
+import os
+import subprocess
+import sys
 
 import pytest
 from numba import njit, types
@@ -55,6 +58,17 @@ def test_signatures_are_those_of_numba(name):
         first = kind.get_call_type(context, (left, right), {})
         assert first == quicker._resolve(kind, context, (left, right), {})
         assert kind.get_call_type(context, (left, right), {}) is first
+
+
+def test_words_of_errors_are_as_bold_as_before():
+    """Numba's own code, in a process of its own."""
+    program = "from numba.core.errors import termcolor; print(termcolor().errmsg('No match.'))"
+    env = os.environ | {"NUMBA_COLOR_SCHEME": "dark_bg"}
+    texts = [
+        subprocess.run([sys.executable, "-c", before + program], env=env, capture_output=True)
+        for before in ("", "import mesokit.kernels.quicker; ")
+    ]
+    assert texts[0].stdout == texts[1].stdout and b"No match." in texts[0].stdout
 
 
 def test_a_signature_that_comes_later_is_found():

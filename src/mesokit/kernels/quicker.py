@@ -1,12 +1,12 @@
 """Numba's slowest steps of translating a function, done once or in fewer calls.
 
-Most of the time to compile a part goes to numba's own Python. Two answers that it works out again
-and again are given at once here; what is compiled stays the same.
+Most of the time to compile a part goes to numba's own Python. Three answers that it works out again
+and again are given sooner here; what is compiled stays the same.
 """
 
 from typing import Any
 
-from numba.core import ir
+from numba.core import errors, ir
 from numba.core.types import Function
 from numba.core.types.functions import BaseFunction
 
@@ -55,5 +55,16 @@ def _collect(value: Any, found: list[ir.Var]) -> None:
             _collect(one, found)
 
 
+def mark(self: Any, message: str, color: str | None = None, style: str = "\x1b[1m") -> str:
+    """A text with the codes for its colour and style around it.
+
+    Numba sets up the terminal for each text. It words an error, in bold, for every answer that is
+    no: most of these are never shown.
+    """
+    return f"{color or ''}{style}{message}\x1b[0m"
+
+
 Function.get_call_type = resolve_once  # type: ignore[method-assign]
 ir.Inst._rec_list_vars = list_variables
+if hasattr(errors, "HighlightColorScheme"):  # not without colorama
+    errors.HighlightColorScheme._markup = mark
