@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from mesokit import (
@@ -53,6 +55,22 @@ def test_the_fraction_is_of_what_walls_leave():
     case = case_of([20, 20], DiskBody(radius=2), walls=[Disk([4, 4], 3)])
     rows = {name: word for name, _, word in summary(case).rows}
     assert rows["bodies disk-1"].endswith("volume fraction 0.0338")
+
+
+@pytest.mark.parametrize(
+    ("body", "surface", "cost"),
+    [
+        (SphereBody(radius=3, number=2), 2 * 36 * math.pi, 40),
+        (CapsuleBody(length=8, radius=2), 3 * (16 + 32 / 3) * math.pi / 2, 170),  # 3 V / R
+    ],
+    ids=["balls", "a rod"],
+)
+def test_bodies_cost_by_their_surface(body, surface, cost):
+    """A particle of the fluid in each unit of it is as dear as so many that only fly."""
+    bare, with_body = case_of([20, 20, 20]), case_of([20, 20, 20], body)
+    empty, seconds = (derive(case, threads=1).seconds for case in (bare, with_body))
+    flying = with_body.particles + 10 * surface * cost
+    assert seconds == pytest.approx(empty * flying / bare.particles, rel=1e-9)
 
 
 def test_nothing_is_said_of_a_sphere_that_is_well_resolved():

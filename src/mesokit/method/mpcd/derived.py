@@ -30,6 +30,8 @@ COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.3, "shear": 1.2, "thread
 # seconds more for each particle-step of a molecule, and for each of its sub-steps
 MOLECULE, SUBSTEP = 5e-9, 1e-9
 BEAD, BEAD_SUBSTEP = 100e-9, 45e-9  # and for each step and sub-step of a bead of a solute
+# and for each particle that the fluid has in a unit of a body's surface, in steps of particles
+NEAR_BALL, NEAR_SHAPE = 40.0, 170.0
 SAMPLE = 12e-9  # seconds for each particle in each sample of an observable
 BYTES = {
     "particle 2D": 68,
@@ -90,6 +92,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         flights = case.solutes.number_of_substeps(dimension, fluid)
         substeps = flights if fluid.molecule is None else substeps
         bead_seconds = beads * (BEAD + BEAD_SUBSTEP * flights) * steps
+    rate /= 1 + _near_bodies(case) / max(case.particles, 1)
     memory = beads * BYTES["bead"] + case.particles * BYTES[f"particle {dimension}D"]
     cells, cell_bytes = case.box.volume, BYTES[f"cell {dimension}D"]
     if case.solutes is None or case.solutes.solvent != "random":
@@ -181,6 +184,19 @@ def body_rows(case: Case) -> list[Row]:
         radius = f"radius {solid.radius:.4g} a, mass {mass:.4g}, volume fraction {share:.3g}"
         rows.append((f"bodies {name}", f"{kind.number:,}".replace(",", " "), radius))
     return rows
+
+
+def _near_bodies(case: Case) -> float:
+    """Particles that would take as long, in each step, as all bodies.
+
+    A shape has the surface that it would have if it were round as at its least width.
+    """
+    found, d = 0.0, case.box.dimension
+    for kind in case.bodies:
+        solid = kind.solid(d)
+        surface = d * solid.volume / (0.5 * solid.thinnest)
+        found += kind.number * surface * (NEAR_BALL if solid.ball else NEAR_SHAPE)
+    return found * case.fluid.density
 
 
 def compiling_memory(case: Case) -> int:
