@@ -9,6 +9,9 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
+# Hundreds of tests start processes: each would compile all sources of Python again
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help demo test test-long test-all durations quick lint check site tutorials sketches films bench \
   test-gpu bench-gpu validate parts clean
 help:

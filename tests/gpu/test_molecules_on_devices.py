@@ -32,7 +32,7 @@ BENT = bulk(3) | {
     "molecule": Molecule(length=4, bond=Harmonic(K=1.0), bending=Bending(kappa=2.0)),
 }  # fmt: skip
 QUICK = {"sheared chains": SHEARED}
-WIDE = ("sheared chains", "dimers in a slit", "stiff rings")
+WIDE = ("sheared chains", "stiff rings")
 OTHERS = {
     **{name: MOLECULES[name] for name in ("dimers in a slit", "stars about a disk")},
     "chains whose shear oscillates": MOLECULES["chains whose shear oscillates"],

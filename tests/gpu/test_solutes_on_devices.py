@@ -61,7 +61,7 @@ OTHERS = {
     **{f"among molecules: {name}": kind for name, kind in AMONG_MOLECULES.items()},
 }  # fmt: skip
 
-WIDE = ("sheared chains with lists", "several kinds", "among molecules: slit", "around a disk")
+WIDE = ("sheared chains with lists", "among molecules: slit", "around a disk")
 
 
 def rows(kinds):

@@ -67,6 +67,7 @@ def test_tapes_are_played_where_no_compiler_is(tmp_path) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.further
 def test_tapes_of_all_kinds_of_fluid_have_the_same_bits(tmp_path, capsys) -> None:
     tapes.record(tmp_path, CHIP)
     assert tapes.play(tmp_path, Emulated(CHIP, seed=4)) == 0

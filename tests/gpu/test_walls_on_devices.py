@@ -32,7 +32,7 @@ MOVING = {2: Surface(velocity=(0.2, 0.0)), 3: Surface(velocity=(0.2, 0.0, 0.1))}
 TURNING = {2: Surface(rotation=0.1), 3: Surface(rotation=(0.0, 0.0, 0.1))}
 QUICK = {"2D turning solid": "checked (9, 0)"}
 ON_HOST = "2D moving plates"
-WIDE = (ON_HOST, "3D plates, SRD+a", "2D solid that tops up, dense", "3D solid, AT, mixture")
+WIDE = (ON_HOST, "2D solid that tops up, dense", "3D solid, AT, mixture")
 
 
 def fluid(dimension: int, **parts) -> dict:
