@@ -33,7 +33,13 @@ from mesokit.method.mpcd.body.capsule import CapsuleBody
 from mesokit.method.mpcd.body.cuboid import CuboidBody
 from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.ellipse import EllipseBody
-from mesokit.method.mpcd.body.protocol import BodyStart, BodyTrap, GapPotential, Squirming
+from mesokit.method.mpcd.body.protocol import (
+    BodyStart,
+    BodyTrap,
+    CounterForce,
+    GapPotential,
+    Squirming,
+)
 from mesokit.method.mpcd.body.rectangle import RectangleBody
 from mesokit.method.mpcd.body.sphere import SphereBody
 from mesokit.method.mpcd.body.spheroid import SpheroidBody
@@ -118,6 +124,8 @@ def test_a_file_with_wrong_bodies_is_refused(text: str, tmp_path: Path, capsys) 
 
 SPHERE, ROUND = SphereBody(radius=3), DiskBody(radius=3)
 FOR_EACH = "numbers, one for each axis of the"
+AHEAD = {"radius": 3, "force": [9, 0], "frame": "body"}
+LONG = {"size": [6, 4], "force": [9, 0], "frame": "body"}
 PUSHED = {"force": [1, 0, 0], "counter_force": True}
 
 
@@ -279,6 +287,30 @@ CASES = {
         3, [SphereBody(radius=3, **PUSHED)], {"fluid": Fluid(force=Sinusoidal(amplitude=0.1))},
         "bodies[#1].counter_force = true: not with fluid.force.rule = 'sinusoidal'; expected "
         "'uniform' or 'none'",
+    ),
+    # what takes the opposite of a force
+    "a counter-force inside of a disk": (
+        2, [DiskBody(**AHEAD, counter=CounterForce(at=[-2, 0]))], {},
+        "bodies[#1].counter.at = [-2, 0]: inside of the body; expected 3 or more from its centre",
+    ),
+    "a counter-force inside of a rectangle": (
+        2, [RectangleBody(**LONG, counter=CounterForce(at=[-2.9, 1.9]))], {},
+        "bodies[#1].counter.at = [-2.9, 1.9]: inside of the body; expected a place outside",
+    ),
+    "a counter-force in 3D of a disk": (
+        2, [DiskBody(**AHEAD, counter=CounterForce(at=[-4, 0, 0]))], {},
+        f"bodies[#1].counter.at = [-4, 0, 0]: expected 2 {FOR_EACH} 2D box",
+    ),
+    "a counter-force on few particles": (
+        2, [DiskBody(**AHEAD, counter=CounterForce(at=[-4, 0], radius=0.5))],
+        {"fluid": Fluid(density=5)},
+        "bodies[#1].counter.radius = 0.5: about 3.9 particles; expected 5 or more to take the "
+        "force",
+    ),
+    "a counter-force at an image": (
+        2, [DiskBody(**AHEAD, counter=CounterForce(at=[-7, 0]))], {},
+        "bodies[#1].counter.at = [-7, 0]: it reaches 8 from the centre; expected at most 6 in a "
+        "box of 16 along x",
     ),
     # starts
     "too few places": (

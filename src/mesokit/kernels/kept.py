@@ -50,7 +50,10 @@ counts = Counts()
 @functools.cache
 def versions() -> str:
     """A word, part of every key, for all else that machine code depends on."""
-    names = "made_of later library part group packing kernel quicker ../scalar/jit".split()
+    names = [
+        *("made_of", "later", "library", "part", "group", "packing", "kernel", "quicker"),
+        "../scalar/jit",
+    ]
     sources = "".join((HERE / f"{name}.py").read_text(encoding="utf-8") for name in names)
     options = "OPT LOOP_VECTORIZE SLP_VECTORIZE BOUNDSCHECK DEBUGINFO_DEFAULT LLVM_REFPRUNE_PASS"
     settings = [str(getattr(config, option)) for option in options.split()]

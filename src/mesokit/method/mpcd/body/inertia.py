@@ -5,6 +5,7 @@ theorem. Where parts overlap, the union is sampled on a fine grid instead.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -91,6 +92,11 @@ def _inside(parts: list[Part], places: Floats) -> NDArray[np.int64]:
     for part, numbers in zip(parts, table, strict=True):
         count_inside(part.code, address(numbers), INSIDE, zero, np.ascontiguousarray(places), found)
     return found
+
+
+def is_inside(solid: Solid, place: Sequence[float]) -> bool:
+    """Whether a place in the frame of a body is inside of it."""
+    return bool(_inside(list(solid.parts), np.array([place], float))[0] > 0)
 
 
 @kernel

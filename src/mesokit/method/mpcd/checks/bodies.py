@@ -8,6 +8,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import name_of, one_of, show, tag_of
 from mesokit.geometry.shape_protocol import Simple, closed_axes
 from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.body.inertia import is_inside
 from mesokit.method.mpcd.body.protocol import Body, named
 from mesokit.method.mpcd.body.union import UnionBody, moves
 
@@ -227,8 +228,10 @@ def _counter(case: Case, kind: Body) -> Iterator[str]:
             return
         far = math.hypot(*counter.at)
         reach = max(reach, far + counter.radius)
-        if solid.ball and far < solid.radius:
-            yield f"{key}: inside of the body; expected {solid.radius:.4g} or more from its centre"
+        if far < solid.radius and (solid.ball or is_inside(solid, counter.at)):
+            least = f"{solid.radius:.4g} or more from its centre"
+            expected = least if solid.ball else "a place outside"
+            yield f"{key}: inside of the body; expected {expected}"
         unit = math.pi if d == 2 else 4.0 / 3.0 * math.pi
         number = case.fluid.density * unit * counter.radius**d
         if number < LEAST_NEARBY:
