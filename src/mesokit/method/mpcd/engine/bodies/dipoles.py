@@ -39,6 +39,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     THREE,
     TURN,
     VELOCITY,
+    add_threads,
     image_near,
     load,
     of_kind,
@@ -73,14 +74,14 @@ def kick_fluid(worker, now, physics, fluid, bodies):
     barrier(worker)
     add_others(worker, bodies, bodies.sums, 0)
     for i in range(low, high):
-        share_kick(worker, physics, bodies, i)
+        share_kick(physics, bodies, i)
     barrier(worker)
     for j in range(mine):
         kick_if_nearby(now, physics, fluid, bodies, thread, j)
     barrier(worker)
     add_others(worker, bodies, bodies.taken, 0)
     for i in range(low, high):
-        take_kick(worker, physics, bodies, i)
+        take_kick(physics, bodies, i)
     barrier(worker)
 
 
@@ -109,13 +110,11 @@ def count_nearby(now, physics, fluid, bodies, thread, j):
 
 
 @seldom
-def share_kick(worker, physics, bodies, i):
+def share_kick(physics, bodies, i):
     """From the sums of body i: the impulse on each particle in its ball, and the velocity w x s + c
     that those in its shell gain."""
+    add_threads(bodies.sums, i)
     total, zero, time = bodies.sums[0, i], physics.zero, physics.timestep
-    for t in range(1, worker.threads):
-        for k in range(len(total)):
-            total[k] += bodies.sums[t, i, k]
     q, impulse, w, c = load(bodies.rows, i, TURN, FOUR), zero, THREE, zero
     if total[NUMBER] > 0:
         force = rotated(q, load(bodies.kinds, bodies.kind[i], BALL_FORCE, zero))
@@ -201,14 +200,14 @@ def kick_if_nearby(now, physics, fluid, bodies, thread, j):
 
 
 @seldom
-def take_kick(worker, physics, bodies, i):
+def take_kick(physics, bodies, i):
     """Give body i the opposite of its impulses; in this step it moves at the mean of its velocities
     before and after them."""
     if of_kind(bodies, i, BALL_RADIUS) == 0.0 and of_kind(bodies, i, SHELL) == 0.0:
         return
     rows = bodies.rows
     v, spin = load(rows, i, VELOCITY, THREE), load(rows, i, SPIN, THREE)
-    take_impulses(worker, physics, bodies, i)
+    take_impulses(physics, bodies, i)
     dv = added_scaled(load(rows, i, VELOCITY, THREE), -1.0, v)
     dw = added_scaled(load(rows, i, SPIN, THREE), -1.0, spin)
     store(rows, i, MEAN_VELOCITY, added_scaled(load(rows, i, MEAN_VELOCITY, THREE), 0.5, dv))

@@ -17,7 +17,6 @@ from mesokit.kernels.part import stage
 from mesokit.loops.layout import record_length, share, sums_length
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.collision.protocol import collide
-from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.hits import (
     add_moments,
     moments_at,
@@ -46,12 +45,12 @@ from mesokit.method.mpcd.engine.bodies.state import (
     IS_BALL,
     PLACE,
     RADIUS,
-    SUMS,
     THREE,
     TURN,
+    add_threads,
+    distance_of,
     load,
     of_kind,
-    rotated_back,
     store,
     swept,
     with_shear,
@@ -162,20 +161,14 @@ def image_up(box, x, zero, copy):
     return x, with_shear(zero, copy * box.speed)
 
 
-@seldom
-def depth_at(bodies, i, s):
-    """Distance of a place at an arm from the surface of body i, negative inside."""
-    if of_kind(bodies, i, IS_BALL) > 0.5:
-        return math.sqrt(dot(s, s)) - of_kind(bodies, i, RADIUS)
-    y = rotated_back(load(bodies.rows, i, TURN, FOUR), s)
-    c, _ = state.clearance(bodies, bodies.kind[i], y)
-    return c
-
-
 @scalar
 def is_cut(bodies, i, s):
     """Whether the surface may cut the cell whose middle is at an arm."""
-    return abs(depth_at(bodies, i, s)) < HALF_DIAGONAL
+    reach = of_kind(bodies, i, RADIUS) + HALF_DIAGONAL
+    if dot(s, s) > reach * reach:
+        return False
+    q = load(bodies.rows, i, TURN, FOUR)
+    return abs(distance_of(bodies, bodies.kind[i], q, s)) < HALF_DIAGONAL
 
 
 class GasCell(NamedTuple):
@@ -240,9 +233,10 @@ def mean_in_ball(density, radius, away):
 def gas_one_by_one(thread, counter, physics, bodies, at, key):
     """Particles at places of an ideal gas, of which those in the body are kept; their moments."""
     found, mean = no_moments(at.middle), mean_gas(bodies, at.body)
+    kind, q = bodies.kind[at.body], load(bodies.rows, at.body, TURN, FOUR)
     for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
         s = uniform_arm(counter, at, key, j)
-        if depth_at(bodies, at.body, s) < 0.0:
+        if distance_of(bodies, kind, q, s) < 0.0:
             drawn = GasDraw(key, j, 1, s)
             found = added(found, put_gas(thread, counter, physics, bodies, at, drawn))
     return found
@@ -313,10 +307,8 @@ def uniform_arm(counter, at, key, draw):
 @scalar
 def take_noise(worker, physics, bodies, i):
     """What is to be taken off the gas of body i, as a velocity and an angular velocity."""
+    add_threads(bodies.sums, i)
     total, d = bodies.sums[0, i], len(physics.zero)
-    for t in range(1, worker.threads):
-        for k in range(SUMS):
-            total[k] += bodies.sums[t, i, k]
     dv, dw = THREE, THREE
     if total[0] != 0:
         work = bodies.work[worker.thread]
@@ -376,7 +368,7 @@ def take_recoil(worker, now, physics, fluid, bodies):
     add_others(worker, bodies, bodies.taken, 0)
     low, high = share(len(bodies.rows), thread, worker.threads)
     for body in range(low, high):
-        take_impulses(worker, physics, bodies, body)
+        take_impulses(physics, bodies, body)
     if now.flags & MEASURE_STRESS:
         add_body_flux(worker, physics, now, bodies, AFTER)
     barrier(worker)

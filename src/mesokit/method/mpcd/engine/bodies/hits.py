@@ -48,7 +48,6 @@ from mesokit.method.mpcd.engine.bodies.state import (
     START,
     START_V,
     STILL_HITTING,
-    SUMS,
     THREE,
     TIME,
     TORQUE,
@@ -56,6 +55,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     VELOCITY,
     R,
     V,
+    add_threads,
     image_near,
     load,
     of_kind,
@@ -125,7 +125,7 @@ def reflect_all(worker, now, physics, fluid, bodies):
         if not trial:
             add_others(worker, bodies, bodies.taken, 0)
             for i in range(low, high):
-                take_impulses(worker, physics, bodies, i)
+                take_impulses(physics, bodies, i)
             barrier(worker)
     for i in range(low, high):
         lengthen_path(bodies, i, now, physics.timestep)
@@ -273,14 +273,12 @@ def add_moments(sums, found, pattern, scales):
 
 @seldom
 def solve_body(worker, physics, bodies, i, scales, trial):
-    """Solve for the change of the velocity of body i; the first of all threads' sums has the total.
+    """Solve for the change of the velocity of body i.
 
     In a trial the mean motion of this step gets half of the change.
     """
+    add_threads(bodies.sums, i)
     total, work, d = bodies.sums[0, i], bodies.work[worker.thread], len(physics.zero)
-    for t in range(1, worker.threads):
-        for k in range(SUMS):
-            total[k] += bodies.sums[t, i, k]
     dv, dw = THREE, THREE
     if total[0] != 0:  # a mass, which every hit adds to
         solve_reflection(bodies, i, total, d, scales, work)
@@ -331,18 +329,12 @@ def give_opposite(thread, now, physics, bodies, i, s, units):
 
 
 @seldom
-def take_impulses(worker, physics, bodies, i):
+def take_impulses(physics, bodies, i):
     """Give body i the impulses that particles gave it, in whole numbers, and forget these."""
     d, unit = len(physics.zero), 1.0 / momentum_scale(physics)
-    turns = 1 if d == 2 else 3
-    total = bodies.taken[0, i]
-    for t in range(1, worker.threads):
-        for k in range(d + turns):
-            total[k] += bodies.taken[t, i, k]
-    give_impulse(bodies, i, total, d, unit, 1.0 / physics.timestep)
-    for t in range(worker.threads):
-        for k in range(d + turns):
-            bodies.taken[t, i, k] = 0
+    add_threads(bodies.taken, i)
+    give_impulse(bodies, i, bodies.taken[0, i], d, unit, 1.0 / physics.timestep)
+    bodies.taken[:, i] = 0
 
 
 @seldom

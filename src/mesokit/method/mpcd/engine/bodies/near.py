@@ -14,7 +14,6 @@ from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.state import (
     EVERY_BODY,
-    IS_BALL,
     MEAN_SPIN,
     MEAN_VELOCITY,
     MOST_NEAR_CELL,
@@ -27,6 +26,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     STRIDE,
     THREE,
     TURN,
+    distance_of,
     image_near,
     load,
     of_kind,
@@ -187,15 +187,6 @@ def list_around(bodies, box, i, mine, zero):
                         if distance_of_all(bodies, kind, q, away) <= reach:
                             put_on_list(bodies, cell, i)
                             clear_cubes(bodies, box, kind, q, cell, away)
-
-
-@seldom
-def distance_of(bodies, kind, q, s):
-    """Distance of a place at an arm from the surface of a body of a kind, negative inside."""
-    if bodies.kinds[kind, IS_BALL] > 0.5:
-        return math.sqrt(dot(s, s)) - bodies.kinds[kind, RADIUS]
-    c, _ = state.clearance(bodies, kind, state.rotated_back(q, s))
-    return c
 
 
 @where("distance_of(bodies, kind, q, s)", bodies=kicks_fluid)

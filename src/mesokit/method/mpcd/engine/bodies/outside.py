@@ -1,12 +1,9 @@
 """Places outside of all bodies and walls, for particles that a step leaves in one."""
 
-import math
-
 from mesokit.geometry.protocol import (
     facing,
     homed,
 )
-from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.near import (
     bodies_near,
     body_near,
@@ -14,14 +11,13 @@ from mesokit.method.mpcd.engine.bodies.near import (
 from mesokit.method.mpcd.engine.bodies.search import normal_at
 from mesokit.method.mpcd.engine.bodies.state import (
     FOUR,
-    IS_BALL,
     PLACE,
     RADIUS,
     TURN,
+    distance_of,
     image_near,
     load,
     of_kind,
-    rotated_back,
 )
 from mesokit.method.mpcd.engine.cpu.physics import has_solid
 from mesokit.method.mpcd.engine.where import where
@@ -74,11 +70,7 @@ def deepest(box, bodies, cell, r):
         s = added_scaled(r, -1.0, x)
         radius = of_kind(bodies, i, RADIUS)
         if dot(s, s) < radius * radius:
-            if of_kind(bodies, i, IS_BALL) > 0.5:
-                c = math.sqrt(dot(s, s)) - radius
-            else:
-                y = rotated_back(load(bodies.rows, i, TURN, FOUR), s)
-                c, _ = state.clearance(bodies, bodies.kind[i], y)
+            c = distance_of(bodies, bodies.kind[i], load(bodies.rows, i, TURN, FOUR), s)
             if c < least:
                 least, out = c, normal_at(bodies, i, s, 0.0)
     return least, out

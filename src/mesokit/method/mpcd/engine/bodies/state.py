@@ -1,5 +1,6 @@
 """Bodies in memory: a row of numbers for each body, and one for each kind of bodies."""
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from mesokit.geometry.primitive import WIDTH
 from mesokit.scalar.elementary import rint, sincos_turn
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
-from mesokit.scalar.vector import added, added_scaled
+from mesokit.scalar.vector import added, added_scaled, dot
 
 # Columns of the row of a body. Vectors have three places; in 2D angular velocities are along z.
 # PLACE and TURN, a unit quaternion w, x, y, z, are those of the beginning of a timestep until all
@@ -288,10 +289,27 @@ def clearance(bodies, kind, y):
 
 
 @seldom
+def distance_of(bodies, kind, q, s):
+    """Distance of a place at an arm s from the surface of a body of a kind, negative inside."""
+    if bodies.kinds[kind, IS_BALL] > 0.5:
+        return math.sqrt(dot(s, s)) - bodies.kinds[kind, RADIUS]
+    c, _ = clearance(bodies, kind, rotated_back(q, s))
+    return c
+
+
+@seldom
 def normal_of(bodies, part, y):
     """Unit normal out of a part at a place in the body's frame."""
     p = bodies.parts + 8 * WIDTH * part
     return primitive.normal(bodies.part_code[part], p, bodies.parts, y)
+
+
+@scalar
+def add_threads(sums, i):
+    """Add the sums of all threads for body i to those of the first thread."""
+    for t in range(1, sums.shape[0]):
+        for k in range(sums.shape[2]):
+            sums[0, i, k] += sums[t, i, k]
 
 
 # --- images ---------------------------------------------------------------------------------------
