@@ -29,12 +29,12 @@ class Step(NamedTuple):
     solid: tuple
     timestep: float
     kT: float
-    scales: tuple
+    momentum_scale: float
 
 
 @njit
 def flown(solid, r, v, a, time, impulse):
-    step = Step(solid, time, 1.0, (SCALE,))
+    step = Step(solid, time, 1.0, SCALE)
     return bounce(step, time, Counter(1, 1), (0, 1.0), r, v, a, impulse)
 
 

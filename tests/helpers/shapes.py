@@ -214,13 +214,13 @@ class Step(NamedTuple):
     solid: Any
     timestep: float
     kT: float
-    scales: tuple
+    momentum_scale: float
 
 
 def bounced(solids: Solids, r: Any, v: Any, a: Any, time: float, number: int = 0) -> Any:
     """Place and velocity after a step, and the momentum that the bodies took (bodies, d)."""
     d = solids.dimension
     impulse = np.zeros((len(solids.bodies), d + (1 if d == 2 else 3)), np.int64)
-    step = Step(solids.kernel, time, 1.0, (SCALE,))
+    step = Step(solids.kernel, time, 1.0, SCALE)
     r, v = _bounced(step, number, tuple(r), tuple(v), tuple(a), impulse.ravel())
     return np.array(r), np.array(v), impulse[:, :d] / SCALE

@@ -60,6 +60,17 @@ def test_signatures_are_those_of_numba(name):
         assert kind.get_call_type(context, (left, right), {}) is first
 
 
+def test_what_another_target_has_resolved_is_not_taken():
+    """One object of a function holds the code that was found last, for processors or for cards."""
+    context = cpu_target.typing_context
+    kind, given = context.resolve_value_type(operator.add), (types.int64, types.int32)
+    found = kind.get_call_type(context, given, {})
+    ours = kind.get_impl_key(found)
+    kind._impl_keys[found.args] = "code for a card"
+    assert kind.get_call_type(context, given, {}) is found
+    assert kind.get_impl_key(found) == ours
+
+
 def test_words_of_errors_are_as_bold_as_before():
     """Numba's own code, in a process of its own."""
     program = "from numba.core.errors import termcolor; print(termcolor().errmsg('No match.'))"

@@ -4,6 +4,7 @@ Most of the time to compile a part goes to numba's own Python. Three answers tha
 and again are given sooner here; what is compiled stays the same.
 """
 
+from types import BuiltinFunctionType
 from typing import Any
 
 from numba.core import errors, ir
@@ -14,18 +15,21 @@ _resolve = BaseFunction.get_call_type
 
 
 def resolve_once(self: Any, context: Any, args: Any, kws: Any) -> Any:
-    """The signature of a call of a built-in function, such as a sum of two numbers.
+    """The signature of a call of a function that is built into Python, such as a sum.
 
     Numba tries all signatures that it has for such a function at every call, and words an error for
-    each that does not fit. New signatures make another object of the function.
+    each that does not fit. New signatures make another object of the function. What is written in
+    Python is asked again each time: it may have been defined anew.
     """
-    if kws:
+    if kws or not isinstance(self.typing_key, BuiltinFunctionType):
         return _resolve(self, context, args, kws)
     known = self.__dict__.setdefault("_resolved", {})
-    asked = id(context), args  # contexts live as long as the process
-    found = known.get(asked)
-    if found is None:
-        found = known[asked] = _resolve(self, context, args, kws)
+    if (context, args) in known:
+        found, key = known[context, args]
+        self._impl_keys[found.args] = key  # one object serves processors and cards
+    else:
+        found = _resolve(self, context, args, kws)
+        known[context, args] = found, self._impl_keys[found.args]
     return found
 
 
