@@ -24,12 +24,11 @@ def resolve_once(self: Any, context: Any, args: Any, kws: Any) -> Any:
     if kws or not isinstance(self.typing_key, BuiltinFunctionType):
         return _resolve(self, context, args, kws)
     known = self.__dict__.setdefault("_resolved", {})
-    if (context, args) in known:
-        found, key = known[context, args]
-        self._impl_keys[found.args] = key  # one object serves processors and cards
-    else:
-        found = _resolve(self, context, args, kws)
-        known[context, args] = found, self._impl_keys[found.args]
+    if (context, args) not in known:
+        signature: Any = _resolve(self, context, args, kws)
+        known[context, args] = signature, self._impl_keys[signature.args]
+    found, key = known[context, args]
+    self._impl_keys[found.args] = key  # again, as one object serves processors and cards
     return found
 
 
