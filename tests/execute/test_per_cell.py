@@ -33,7 +33,9 @@ def batch(means, start):
     work = np.zeros(ROWS * SCRATCH_ROW)
     for i in range(LANES):
         work[MEAN * SCRATCH_ROW + i] = means[i]
-    count_batch(np.arange(start, start + LANES), Counter(np.uint64(5), np.uint64(9)), work)
+    count_batch(
+        np.arange(start, start + LANES), Counter(np.uint64(5), np.uint64(9)), VIRTUAL_NUMBER, work
+    )
     return work[NUMBER * SCRATCH_ROW : NUMBER * SCRATCH_ROW + LANES]
 
 

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from mesokit.case.case import Case
 from mesokit.geometry.solids.solids import Solids
-from mesokit.loops.layout import LANES, zeros
+from mesokit.loops.layout import LANES, SCRATCH_ROW, zeros
 from mesokit.method.mpcd.body.protocol import Body, Squirming
 from mesokit.method.mpcd.engine.bodies import state
+from mesokit.method.mpcd.engine.bodies.gas import BATCH_ROWS
 from mesokit.method.mpcd.engine.bodies.state import MovingBodies
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
@@ -203,6 +204,8 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
         work=zeros((threads, state.WORK)),
         chosen=zeros((threads, LANES), np.int64),
         flights=zeros((threads, 7, LANES)),
+        batch=zeros((threads, BATCH_ROWS * SCRATCH_ROW)),
+        keys=zeros((threads, 3, LANES), np.int64),
         waste=zeros((threads, waste), np.int64),
         counters_near=(1,) if any(kind.counter for kind in case.bodies) else (),
         solid=walls,

@@ -14,7 +14,7 @@ import numpy as np
 
 from mesokit.case.box import SLIDING, fold
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import record_length, share, sums_length
+from mesokit.loops.layout import LANES, SCRATCH_ROW, record_length, share, sums_length
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.collision.protocol import collide
 from mesokit.method.mpcd.engine.bodies.hits import (
@@ -31,6 +31,7 @@ from mesokit.method.mpcd.engine.bodies.search import normal_at
 from mesokit.method.mpcd.engine.bodies.state import (
     B1,
     B2,
+    BATCHED,
     CHANGE,
     FILLED,
     FOUR,
@@ -65,12 +66,18 @@ from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale, of_bodies, of_gas
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import needs_energy
-from mesokit.method.mpcd.engine.cpu.strips.rows import add_values, load_values
+from mesokit.method.mpcd.engine.cpu.strips.rows import (
+    add_values,
+    load_scratch,
+    load_values,
+    store_scratch,
+)
 from mesokit.method.mpcd.engine.domains.messages.bodies import add_others, is_own_cell
 from mesokit.method.mpcd.engine.domains.messages.shared import key_of
 from mesokit.method.mpcd.engine.embedded.near import note
 from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
 from mesokit.method.mpcd.engine.virtual.of_cell import Many, brought_by_many, cut_at
+from mesokit.method.mpcd.engine.virtual.per_cell import MEAN, NUMBER, THERMAL, count_batch
 from mesokit.method.mpcd.engine.where import where
 from mesokit.scalar.fixed_point import add_integers, added_quanta, floats, integers
 from mesokit.scalar.gamma import gamma_number, likely
@@ -91,13 +98,16 @@ from mesokit.scalar.vector import added, added_scaled, dot, first, outer, scaled
 MOST_OF_CELL = 2**10  # virtual particles of a body in a cell: more never come
 MOST_DRAWS = 256  # of a place in the part of a cell that is in a ball
 HALF_DIAGONAL = 0.5 * math.sqrt(3.0)
+# Rows of a batch of cells beside those of `virtual.per_cell`. Places and velocities have three.
+GAS_AT, MIDDLE, CENTRE, BALL, SPEED = 0, 13, 16, 19, 20
+BATCH_ROWS = 21
 
 
 @stage
 def draw_all_gas(worker, now, physics, fluid, bodies):
     """Draw the gas of all bodies at t + dt, and add it to the sums of its cells."""
     thread, here = worker.thread, bodies.counters[worker.thread]
-    here[GAS_COUNT] = 0
+    here[GAS_COUNT] = here[BATCHED] = 0
     if now.flags & MEASURE_STRESS:
         add_body_flux(worker, physics, now, bodies, BEFORE)
     # First the gas of this thread's part of each body: places, thermal velocities, and the sums
@@ -108,6 +118,7 @@ def draw_all_gas(worker, now, physics, fluid, bodies):
             for copy in range(3 if slides(now.box) else 1):
                 up = copy - 1 if slides(now.box) else 0
                 draw_gas(worker, now, of_gas(physics), fluid, bodies, i, up)
+    draw_cells_of_balls(thread, now.counter, of_gas(physics), bodies)
     barrier(worker)
     add_others(worker, bodies, bodies.sums, 0)
     low, high = share(len(bodies.rows), thread, worker.threads)
@@ -184,36 +195,96 @@ class GasCell(NamedTuple):
 
 @seldom
 def fill_cell_of_body(worker, now, physics, bodies, at, cell_key):
-    """The gas of body i in a cell."""
+    """The gas of body i in a cell; all of a cell that a ball cuts waits for its batch."""
     key = np.int64(at.body) * np.int64(bodies.cells + 1) + cell_key
     if bodies.together == 1 and of_kind(bodies, at.body, IS_BALL) > 0.5:
-        found = gas_together(worker.thread, now.counter, physics, bodies, at, key)
-    else:
-        found = gas_one_by_one(worker.thread, now.counter, physics, bodies, at, key)
+        put_in_batch(worker.thread, bodies, at, key)
+        if bodies.counters[worker.thread, BATCHED] == LANES:
+            draw_cells_of_balls(worker.thread, now.counter, physics, bodies)
+        return
+    found = gas_one_by_one(worker.thread, now.counter, physics, bodies, at, key)
     # The terms of a cell are added before they are rounded, in the order in which they were drawn.
     add_moments(
         bodies.sums[worker.thread, at.body], found, at.middle, physics_scales(bodies, physics)
     )
 
 
+# --- all of a cell at once ------------------------------------------------------------------------
+
+
 @scalar
-def gas_together(thread, counter, physics, bodies, at, key):
-    """All particles of the gas of a ball in a cell as one, as heavy as they are; its moments.
+def put_in_batch(thread, bodies, at, key):
+    """Put a cell that a ball cuts in the batch of this thread."""
+    work, keys, n = bodies.batch[thread], bodies.keys[thread], bodies.counters[thread, BATCHED]
+    store_scratch(work, MIDDLE * SCRATCH_ROW + n, at.middle)
+    store_scratch(work, CENTRE * SCRATCH_ROW + n, at.centre)
+    work[BALL * SCRATCH_ROW + n] = of_kind(bodies, at.body, RADIUS)
+    work[MEAN * SCRATCH_ROW + n] = mean_gas(bodies, at.body)
+    work[SPEED * SCRATCH_ROW + n] = at.speed
+    keys[0, n], keys[1, n], keys[2, n] = key, at.cell, at.body
+    bodies.counters[thread, BATCHED] = n + 1
+
+
+@seldom
+def draw_cells_of_balls(thread, counter, physics, bodies):
+    """All particles of the gas in each cell of a batch as one, as heavy as they are.
 
     The place is that of one of them: with the mean place, the gas would have too little of a moment
     of inertia, by 8 % of its own at a radius of 2.
     """
-    away, radius = added_scaled(at.middle, -1.0, at.centre), of_kind(bodies, at.body, RADIUS)
-    mean, place = mean_in_ball(mean_gas(bodies, at.body), radius, away)
-    number, draw = poisson_number(mean, counter, BODY_GAS_NUMBER, key), 0
-    if number == 0:
-        return no_moments(away)
-    while draw < MOST_DRAWS:
-        s = uniform_arm(counter, at, key, draw)
-        if dot(s, s) < radius * radius:
-            place, draw = s, MOST_DRAWS
-        draw += 1
-    return put_gas(thread, counter, physics, bodies, at, GasDraw(key, 0, number, place))
+    work, keys, zero = bodies.batch[thread], bodies.keys[thread], physics.zero
+    count, scales = bodies.counters[thread, BATCHED], physics_scales(bodies, physics)
+    bodies.counters[thread, BATCHED] = 0
+    # Mean numbers, numbers, places and thermal velocities of all cells in loops that become
+    # vectors; then the entries one by one. All follow from the key of the cell alone, so it does
+    # not matter which cells a batch has.
+    for j in range(LANES):
+        away = added_scaled(load_scratch(work, MIDDLE * SCRATCH_ROW + j, zero), -1.0,
+                            load_scratch(work, CENTRE * SCRATCH_ROW + j, zero))  # fmt: skip
+        mean, place = mean_in_ball(work[MEAN * SCRATCH_ROW + j], work[BALL * SCRATCH_ROW + j], away)
+        work[MEAN * SCRATCH_ROW + j] = mean if j < count else 0.0
+        store_scratch(work, GAS_AT * SCRATCH_ROW + j, place)
+    count_batch(keys[0], counter, BODY_GAS_NUMBER, work)
+    place_batch(counter, work, keys[0], bodies.chosen[thread], count, zero)
+    for j in range(LANES):
+        m = bodies.gas_mass * max(work[NUMBER * SCRATCH_ROW + j], 1.0)
+        thermal = thermal_velocity(counter, physics, keys[0, j], 0, m)
+        store_scratch(work, THERMAL * SCRATCH_ROW + j, thermal)
+    for j in range(count):
+        number, key = np.int64(work[NUMBER * SCRATCH_ROW + j]), keys[0, j]
+        if number > 0:
+            centre = load_scratch(work, CENTRE * SCRATCH_ROW + j, zero)
+            at = GasCell(keys[2, j], centre, work[SPEED * SCRATCH_ROW + j], centre, keys[1, j])
+            s = load_scratch(work, GAS_AT * SCRATCH_ROW + j, zero)
+            v = load_scratch(work, THERMAL * SCRATCH_ROW + j, zero)
+            inner = inner_energy(counter, physics, key, number)
+            found = put_gas(thread, counter, bodies, at, GasDraw(key, 0, number, s, v, inner))
+            add_moments(bodies.sums[thread, at.body], found, zero, scales)
+
+
+@scalar
+def place_batch(counter, work, keys, waiting, count, zero):
+    """A uniform place in the ball for each cell with particles: draws until it lies there."""
+    left, draw = 0, 0
+    for j in range(count):
+        waiting[left] = j
+        left += np.int64(work[NUMBER * SCRATCH_ROW + j] > 0.5)
+    while left > 0 and draw < MOST_DRAWS:
+        for n in range(left):
+            j = waiting[n]
+            middle = load_scratch(work, MIDDLE * SCRATCH_ROW + j, zero)
+            s = added_scaled(uniform_place(counter, middle, keys[j], draw), -1.0,
+                             load_scratch(work, CENTRE * SCRATCH_ROW + j, zero))  # fmt: skip
+            store_scratch(work, THERMAL * SCRATCH_ROW + n, s)
+        still = 0
+        for n in range(left):
+            j, s = waiting[n], load_scratch(work, THERMAL * SCRATCH_ROW + n, zero)
+            outside = dot(s, s) >= work[BALL * SCRATCH_ROW + j] * work[BALL * SCRATCH_ROW + j]
+            if not outside:
+                store_scratch(work, GAS_AT * SCRATCH_ROW + j, s)
+            waiting[still] = j
+            still += np.int64(outside)
+        left, draw = still, draw + 1
 
 
 @scalar
@@ -229,16 +300,20 @@ def mean_in_ball(density, radius, away):
     return mean, place
 
 
+# --- one by one -----------------------------------------------------------------------------------
+
+
 @scalar
 def gas_one_by_one(thread, counter, physics, bodies, at, key):
     """Particles at places of an ideal gas, of which those in the body are kept; their moments."""
     found, mean = no_moments(at.middle), mean_gas(bodies, at.body)
     kind, q = bodies.kind[at.body], load(bodies.rows, at.body, TURN, FOUR)
     for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
-        s = uniform_arm(counter, at, key, j)
+        s = added_scaled(uniform_place(counter, at.middle, key, j), -1.0, at.centre)
         if distance_of(bodies, kind, q, s) < 0.0:
-            drawn = GasDraw(key, j, 1, s)
-            found = added(found, put_gas(thread, counter, physics, bodies, at, drawn))
+            thermal = thermal_velocity(counter, physics, key, j, bodies.gas_mass)
+            drawn = GasDraw(key, j, 1, s, thermal, 0.0)
+            found = added(found, put_gas(thread, counter, bodies, at, drawn))
     return found
 
 
@@ -249,35 +324,41 @@ def mean_gas(bodies, i):
 
 
 class GasDraw(NamedTuple):
-    """Particles of the gas: key of their cell, number of the first, how many, and their arm."""
+    """Particles of the gas: key of their cell, number of the first, how many, their arm, mean
+    thermal velocity, and the sum of m v^2 about that."""
 
     key: np.int64
     draw: int
     number: int
     arm: tuple
+    thermal: tuple
+    inner: float
+
+
+@scalar
+def thermal_velocity(counter, physics, key, draw, m):
+    """Thermal velocity of a draw of a cell, of a mass."""
+    a, b, c, e = words(counter, BODY_GAS_VELOCITY, key, draw)
+    return scaled(math.sqrt(physics.kT / m), normals(physics.zero, a, b, c, e))
 
 
 @seldom
-def put_gas(thread, counter, physics, bodies, at, drawn):
+def put_gas(thread, counter, bodies, at, drawn):
     """Put particles of the gas on the list of this thread, as one; their moments."""
-    key, draw, number, s = drawn
-    n, gas, zero = bodies.counters[thread, GAS_COUNT], bodies.gas[thread], at.middle
+    n, gas, s = bodies.counters[thread, GAS_COUNT], bodies.gas[thread], drawn.arm
     if n == gas.shape[0]:
         note(bodies.faults[thread], counter.step, TOO_MANY, at.body + 1)
-        return no_moments(zero)
-    a, b, c, e = words(counter, BODY_GAS_VELOCITY, key, draw)
-    m = bodies.gas_mass * number
-    thermal = scaled(math.sqrt(physics.kT / m), normals(zero, a, b, c, e))
+        return no_moments(s)
+    m = bodies.gas_mass * drawn.number
     store(gas, n, GAS_PLACE, added(at.centre, s))
-    store(gas, n, GAS_VELOCITY, thermal)
+    store(gas, n, GAS_VELOCITY, drawn.thermal)
     store(gas, n, GAS_ARM, s)
-    gas[n, GAS_SPEED], gas[n, GAS_MASS] = at.speed, m
-    gas[n, GAS_INNER] = inner_energy(counter, physics, key, number)
-    bodies.gas_number[thread, n] = FIRST_BODY_GAS + key * MOST_OF_CELL + draw
+    gas[n, GAS_SPEED], gas[n, GAS_MASS], gas[n, GAS_INNER] = at.speed, m, drawn.inner
+    bodies.gas_number[thread, n] = FIRST_BODY_GAS + drawn.key * MOST_OF_CELL + drawn.draw
     bodies.gas_cell[thread, n] = at.cell
     bodies.gas_body[thread, n] = at.body
     bodies.counters[thread, GAS_COUNT] = n + 1
-    arm, p = scaled(1.0 / bodies.lever, s), scaled(m, thermal)
+    arm, p = scaled(1.0 / bodies.lever, s), scaled(m, drawn.thermal)
     return moments_at(m, arm) + p + outer(arm, p)
 
 
@@ -295,13 +376,13 @@ def inner_energy(counter, physics, key, number):
 
 
 @scalar
-def uniform_arm(counter, at, key, draw):
-    """The arm of a uniform place in a cell."""
+def uniform_place(counter, middle, key, draw):
+    """A uniform place in the cell about a middle."""
     a, b, c, _ = words(counter, BODY_GAS_PLACE, key, draw)
-    within, s = first((unit_open(a), unit_open(b), unit_open(c)), at.middle), at.middle
-    for k in range(len(s)):
-        s = with_item(s, k, s[k] + within[k] - 0.5)
-    return added_scaled(s, -1.0, at.centre)
+    within, r = first((unit_open(a), unit_open(b), unit_open(c)), middle), middle
+    for k in range(len(r)):
+        r = with_item(r, k, r[k] + within[k] - 0.5)
+    return r
 
 
 @scalar

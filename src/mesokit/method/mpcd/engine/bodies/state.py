@@ -64,7 +64,7 @@ GAS_PLACE, GAS_VELOCITY, GAS_KEPT, GAS_ARM = 0, 3, 6, 9
 GAS_SPEED, GAS_MASS, GAS_INNER = 12, 13, 14
 GAS_COLUMNS = 15
 # Counters of a thread.
-COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT, STILL_HITTING = 0, 1, 2, 3, 4, 5
+COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT, STILL_HITTING, BATCHED = range(7)
 COUNTERS = 8
 CAUGHT, TOO_FAST = 4, 5  # what a fault may be, beside those of `embedded.state`
 SPEED, MILLIONTH = 3, 1e-6  # of a fault: where the speed of a body is, and in what
@@ -92,8 +92,9 @@ class MovingBodies(NamedTuple):
     each entry. together: 1 where the rule lets those of a cell be drawn at once, else 0.
     tensor (threads, 2, 2 d^2): terms of the stress, before and after the collision.
     counters (threads, COUNTERS); faults (threads, 8): the first thing that goes wrong; work
-    (threads, WORK), chosen (threads, LANES), flights (threads, 7, LANES): scratch memory; waste:
-    what walls take by flights that do not count.
+    (threads, WORK), chosen (threads, LANES), flights (threads, 7, LANES): scratch memory; batch
+    (threads, rows), keys (threads, 3, LANES): cells that wait for their gas, and of each the key,
+    the cell and the body; waste: what walls take by flights that do not count.
     counters_near: (1,) where the fluid near bodies takes counter-forces, else ().
     solid: walls as the potential of gaps sees them, or (). pull: the uniform acceleration of all
     that balances forces on bodies. messages: to other ranks, or ().
@@ -136,6 +137,8 @@ class MovingBodies(NamedTuple):
     work: Any
     chosen: Any
     flights: Any
+    batch: Any
+    keys: Any
     waste: Any
     counters_near: tuple
     solid: tuple

@@ -72,7 +72,7 @@ def cut_batch(virtual, start, count, solid, grid, work, zero):
 
 
 @scalar
-def count_batch(numbers, counter, work):
+def count_batch(numbers, counter, purpose, work):
     """Numbers of particles: Poisson, for all cells of a batch at once."""
     most = 0.0
     for i in range(LANES):
@@ -84,7 +84,7 @@ def count_batch(numbers, counter, work):
     # that are done go on without effect, so a number depends on its cell only.
     while most > 0.0:
         for i in range(LANES):
-            a, _, _, _ = words(counter, VIRTUAL_NUMBER, numbers[i], draw)
+            a, _, _, _ = words(counter, purpose, numbers[i], draw)
             mean = min(work[MEAN * SCRATCH_ROW + i], MOST_MEAN)
             chance, left = none_found(a, mean)
             work[CHANCE * SCRATCH_ROW + i] = chance
@@ -139,7 +139,7 @@ def _fill(worker, now, physics, sums, virtual):
         for i in range(count, LANES):
             work[MEAN * SCRATCH_ROW + i] = 0.0
         numbers = virtual.keys[first + start : first + start + LANES]
-        count_batch(numbers, now.counter, work)
+        count_batch(numbers, now.counter, VIRTUAL_NUMBER, work)
         draw_batch(physics, numbers, now.counter, work)
         for i in range(count):
             if work[NUMBER * SCRATCH_ROW + i] > 0.5:
