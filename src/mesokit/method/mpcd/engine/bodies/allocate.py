@@ -13,7 +13,6 @@ from mesokit.geometry.solids.solids import Solids
 from mesokit.loops.layout import LANES, SCRATCH_ROW, zeros
 from mesokit.method.mpcd.body.protocol import Body, Squirming
 from mesokit.method.mpcd.engine.bodies import state
-from mesokit.method.mpcd.engine.bodies.gas import BATCH_ROWS
 from mesokit.method.mpcd.engine.bodies.state import MovingBodies
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
@@ -185,6 +184,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
         cubes=zeros((threads, LANES), np.int32),
         near_count=np.zeros(near, np.int32),
         near=np.zeros((near, state.MOST_NEAR_CELL), np.int32),
+        alone=np.full(near, state.NO_BODY, np.int32),
         clear=np.zeros((numbers.number_of_cells << d) + 1, np.uint8),
         partner_count=np.zeros(n, np.int32),
         partners=np.zeros((n, state.MOST_PARTNERS), np.int32),
@@ -203,8 +203,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
         faults=zeros((threads, 8), np.int64),
         work=zeros((threads, state.WORK)),
         chosen=zeros((threads, LANES), np.int64),
-        flights=zeros((threads, 7, LANES)),
-        batch=zeros((threads, BATCH_ROWS * SCRATCH_ROW)),
+        columns=zeros((threads, state.ROWS * SCRATCH_ROW)),
         keys=zeros((threads, 3, LANES), np.int64),
         waste=zeros((threads, waste), np.int64),
         counters_near=(1,) if any(kind.counter for kind in case.bodies) else (),

@@ -100,7 +100,6 @@ MOST_DRAWS = 256  # of a place in the part of a cell that is in a ball
 HALF_DIAGONAL = 0.5 * math.sqrt(3.0)
 # Rows of a batch of cells beside those of `virtual.per_cell`. Places and velocities have three.
 GAS_AT, MIDDLE, CENTRE, BALL, SPEED = 0, 13, 16, 19, 20
-BATCH_ROWS = 21
 
 
 @stage
@@ -215,7 +214,7 @@ def fill_cell_of_body(worker, now, physics, bodies, at, cell_key):
 @scalar
 def put_in_batch(thread, bodies, at, key):
     """Put a cell that a ball cuts in the batch of this thread."""
-    work, keys, n = bodies.batch[thread], bodies.keys[thread], bodies.counters[thread, BATCHED]
+    work, keys, n = bodies.columns[thread], bodies.keys[thread], bodies.counters[thread, BATCHED]
     store_scratch(work, MIDDLE * SCRATCH_ROW + n, at.middle)
     store_scratch(work, CENTRE * SCRATCH_ROW + n, at.centre)
     work[BALL * SCRATCH_ROW + n] = of_kind(bodies, at.body, RADIUS)
@@ -232,7 +231,7 @@ def draw_cells_of_balls(thread, counter, physics, bodies):
     The place is that of one of them: with the mean place, the gas would have too little of a moment
     of inertia, by 8 % of its own at a radius of 2.
     """
-    work, keys, zero = bodies.batch[thread], bodies.keys[thread], physics.zero
+    work, keys, zero = bodies.columns[thread], bodies.keys[thread], physics.zero
     count, scales = bodies.counters[thread, BATCHED], physics_scales(bodies, physics)
     bodies.counters[thread, BATCHED] = 0
     # Mean numbers, numbers, places and thermal velocities of all cells in loops that become

@@ -18,6 +18,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     MEAN_VELOCITY,
     MOST_NEAR_CELL,
     MOST_PARTNERS,
+    NO_BODY,
     PATH,
     PLACE,
     RADIUS,
@@ -150,7 +151,7 @@ def list_by_cells(worker, box, bodies, zero):
     cells, d = len(bodies.near_count) - 1, len(zero)
     first, last = share(cells, worker.thread, worker.threads)
     for cell in range(first, last):
-        bodies.near_count[cell] = 0
+        bodies.near_count[cell], bodies.alone[cell] = 0, NO_BODY
         for cube in range(1 << d):
             bodies.clear[half_of(bodies, cell, cube, d)] = FAR
     # Body by body, the cells of a cube about it. A thread writes the lists of its own cells only,
@@ -266,6 +267,8 @@ def put_on_list(bodies, cell, i):
     n = bodies.near_count[cell]
     if n == EVERY_BODY or (n > 0 and bodies.near[cell, n - 1] == i):
         return
+    is_ball = of_kind(bodies, i, state.IS_BALL) > 0.5
+    bodies.alone[cell] = i if n == 0 and is_ball else NO_BODY
     if n == MOST_NEAR_CELL:
         bodies.near_count[cell] = EVERY_BODY
     else:
@@ -320,9 +323,8 @@ def cube_of(bodies, box, r):
 
 
 @scalar
-def list_of(bodies, box, r, reach):
-    """The cell whose list has all bodies within reach of a place; EVERY_BODY where none has."""
-    cell = np.int64(cell_of(bodies, box, r))
+def list_of(bodies, cell, reach):
+    """A cell, if its list has all bodies within reach of a place in it; else EVERY_BODY."""
     holds = reach < LIST_REACH and bodies.near_count[cell] != EVERY_BODY
     return cell if holds else np.int64(EVERY_BODY)
 

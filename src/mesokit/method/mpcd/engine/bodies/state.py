@@ -68,6 +68,7 @@ COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT, STILL_HITTING, BATCHED = range(7)
 COUNTERS = 8
 CAUGHT, TOO_FAST = 4, 5  # what a fault may be, beside those of `embedded.state`
 SPEED, MILLIONTH = 3, 1e-6  # of a fault: where the speed of a body is, and in what
+ROWS = 21  # of scratch memory for flights, and for cells that wait for their gas
 WORK = 256  # floats of scratch memory of a thread
 
 
@@ -83,8 +84,9 @@ class MovingBodies(NamedTuple):
     the mean motion, else 0.
     grid: cells of the box, without shift; halves: cubes of half the size; cubes (threads, LANES):
     scratch memory; near_count (cells + 1,), near (cells + 1, MOST_NEAR_CELL): the bodies near each
-    cell; clear (cubes + 1,): the distance that is clear around each cube. partner_count (bodies,),
-    partners (bodies, MOST_PARTNERS): other bodies that may come near.
+    cell; alone (cells + 1,): the ball that is the only body on its list, or NO_BODY; clear
+    (cubes + 1,): the distance that is clear around each cube. partner_count (bodies,), partners
+    (bodies, MOST_PARTNERS): other bodies that may come near.
     values (threads, most, NEAR_COLUMNS), numbers (threads, most, NEAR_NUMBERS): particles near.
     sums (threads, bodies, SUMS): of the hits in hand; taken (threads, bodies, 6): impulses, in
     whole numbers. gas (threads, most, GAS_COLUMNS): virtual particles, of gas_mass, or all of a
@@ -92,9 +94,9 @@ class MovingBodies(NamedTuple):
     each entry. together: 1 where the rule lets those of a cell be drawn at once, else 0.
     tensor (threads, 2, 2 d^2): terms of the stress, before and after the collision.
     counters (threads, COUNTERS); faults (threads, 8): the first thing that goes wrong; work
-    (threads, WORK), chosen (threads, LANES), flights (threads, 7, LANES): scratch memory; batch
-    (threads, rows), keys (threads, 3, LANES): cells that wait for their gas, and of each the key,
-    the cell and the body; waste: what walls take by flights that do not count.
+    (threads, WORK), chosen (threads, LANES), columns (threads, ROWS * SCRATCH_ROW): scratch memory;
+    keys (threads, 3, LANES): of each cell that waits for its gas the key, the cell and the body;
+    waste: what walls take by flights that do not count.
     counters_near: (1,) where the fluid near bodies takes counter-forces, else ().
     solid: walls as the potential of gaps sees them, or (). pull: the uniform acceleration of all
     that balances forces on bodies. messages: to other ranks, or ().
@@ -118,6 +120,7 @@ class MovingBodies(NamedTuple):
     cubes: Any
     near_count: Any
     near: Any
+    alone: Any
     clear: Any
     partner_count: Any
     partners: Any
@@ -136,8 +139,7 @@ class MovingBodies(NamedTuple):
     faults: Any
     work: Any
     chosen: Any
-    flights: Any
-    batch: Any
+    columns: Any
     keys: Any
     waste: Any
     counters_near: tuple

@@ -9,16 +9,18 @@ import numpy as np
 
 from mesokit.case.box import SLIDING
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
+from mesokit.loops.layout import LANES, SCRATCH_ROW, lanes_in, share, strip_at, strips_in
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.near import (
     ALLOWANCE,
     BEYOND,
+    LIST_REACH,
     PARTS,
     bodies_near,
     body_near,
     box_at_start,
+    cell_of,
     cube_of,
     list_of,
     takes_counter,
@@ -27,7 +29,6 @@ from mesokit.method.mpcd.engine.bodies.state import (
     BODY,
     CELL,
     COUNT,
-    EVERY_BODY,
     GOING,
     IMAGE,
     IS_BALL,
@@ -59,7 +60,7 @@ from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.physics import of_bodies
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.one import put_one
-from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, load_scratch, store_scratch
 from mesokit.method.mpcd.engine.cpu.sweep import add_strip_flux
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
 from mesokit.method.mpcd.engine.domains.messages.migrate import note_migrants
@@ -68,12 +69,12 @@ from mesokit.method.mpcd.engine.embedded.near import note
 from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
 from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.streaming import halfway, vector
-from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 KEEP, RESTORE = 0, 1
-RADIUS_OF = 6  # row of the flights of candidates, after places and velocities
+# Rows of the flights of candidates: their places, velocities and paths, and the ball near each.
+PLACE_OF, VELOCITY_OF, BALL_OF, BALL_VELOCITY_OF, RADIUS_OF, PATH_OF = 0, 3, 6, 9, 12, 13
 WAITING = -1  # the cell of a particle that has not flown yet
 
 
@@ -185,21 +186,33 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
         mark = marks[i]
         marks[candidates] = i
         candidates += mark
-    # Most candidates are near one ball alone, and fly past it: that is seen in a loop over vectors.
-    flights = bodies.flights[thread]
+    # Most candidates are near one ball alone, and fly past it. That is seen in loops over vectors,
+    # with one between them that looks up the ball.
+    flights = bodies.columns[thread]
     for j in range(candidates):
-        r, v = load_particle(strip, marks[j], 0, zero), load_particle(strip, marks[j], d, zero)
-        cubes[j] = np.int32(store_flight(bodies, physics, box, r, v, allowance, flights, j))
+        store_scratch(flights, PLACE_OF * SCRATCH_ROW + j, load_particle(strip, marks[j], 0, zero))
+        store_scratch(
+            flights, VELOCITY_OF * SCRATCH_ROW + j, load_particle(strip, marks[j], d, zero)
+        )
     for j in range(candidates):
-        y, w = load_flight(flights, 0, j, zero), load_flight(flights, d, j, zero)
-        flights[RADIUS_OF, j] = 1.0 if meets_ball(flights[RADIUS_OF, j], y, w, time) else 0.0
+        r, v = (
+            load_scratch(flights, PLACE_OF * SCRATCH_ROW + j, zero),
+            load_scratch(flights, VELOCITY_OF * SCRATCH_ROW + j, zero),
+        )
+        flights[PATH_OF * SCRATCH_ROW + j] = longest_flight(bodies, physics, r, v)
+        cubes[j] = np.int32(cell_of(bodies, box, r))
+    for j in range(candidates):
+        look_up_ball(bodies, box, flights, np.int64(cubes[j]), allowance, j, zero)
+    for j in range(candidates):
+        flights[RADIUS_OF * SCRATCH_ROW + j] = passes_ball(box, flights, j, time, zero)
     # Exact test of the few others, by the bodies on their lists.
     for j in range(candidates):
-        if flights[RADIUS_OF, j] == 0.0:
+        if flights[RADIUS_OF * SCRATCH_ROW + j] == 0.0:
             continue
-        i, cell = marks[j], np.int64(cubes[j])
+        i, reach = marks[j], flights[PATH_OF * SCRATCH_ROW + j] + allowance
+        cell = list_of(bodies, np.int64(cubes[j]), reach)
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        path = longest_flight(bodies, physics, r, v)
+        path = flights[PATH_OF * SCRATCH_ROW + j]
         if may_hit(bodies, physics, box, cell, r, v, path) or takes_counter(bodies, box, cell, r):
             n = bodies.counters[thread, COUNT]
             if n == bodies.values.shape[1]:
@@ -232,7 +245,8 @@ def may_hit(bodies, physics, box, cell, r, v, path):
         x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
         away, stride, kind = added_scaled(r, -1.0, x), bodies.rows[i, STRIDE], bodies.kind[i]
         if bodies.kinds[kind, IS_BALL] > 0.5:
-            radius, w = flight_by_ball(bodies, i, v, speed, path, time)
+            u = load(bodies.rows, i, MEAN_VELOCITY, r)
+            radius, w = flight_by_ball(of_kind(bodies, i, RADIUS) + stride, u, v, speed, path, time)
             if meets_ball(radius, away, w, time):
                 return True
         else:
@@ -244,16 +258,16 @@ def may_hit(bodies, physics, box, cell, r, v, path):
 
 
 @scalar
-def flight_by_ball(bodies, i, v, speed, path, time):
-    """Radius of a ball that a flight must enter to hit body i, and the velocity of the flight.
+def flight_by_ball(radius, u, v, speed, path, time):
+    """Radius of a ball that a flight must enter to hit a body, and the velocity of the flight
+    relative to that of the ball, u in an image with a speed.
 
     A flight that is bent may go anywhere on its path: it starts in a larger ball, or meets none.
     """
-    radius = of_kind(bodies, i, RADIUS) + bodies.rows[i, STRIDE]
-    u = state.with_shear(load(bodies.rows, i, MEAN_VELOCITY, v), speed)
     straight = path * path <= time * time * dot(v, v) * (1.0 + 1e-12)
     part = 1.0 if straight else 0.0
-    return radius + (1.0 - part) * path, scaled(part, added_scaled(v, -1.0, u))
+    w = added_scaled(v, -1.0, state.with_shear(u, speed))
+    return radius + (1.0 - part) * path, scaled(part, w)
 
 
 @scalar
@@ -266,31 +280,36 @@ def meets_ball(radius, y, w, time):
 
 
 @scalar
-def store_flight(bodies, physics, box, r, v, allowance, flights, j):
-    """Note the flight of a candidate by the ball that is alone near it; the cell whose list holds.
+def look_up_ball(bodies, box, flights, cell, allowance, j, zero):
+    """Put the ball that is alone near a candidate, on the list of its cell, in its column.
 
-    Where no ball is, or the particle takes a counter-force, it is one that meets the ball.
+    Where none is, or the particle takes a counter-force, it is one that all flights meet.
     """
-    y, w, radius, path = r, v, BEYOND, longest_flight(bodies, physics, r, v)
-    cell = list_of(bodies, box, r, path + allowance)
-    if cell != EVERY_BODY and bodies.near_count[cell] == 1:
-        i = np.int64(bodies.near[cell, 0])
-        if of_kind(bodies, i, IS_BALL) > 0.5 and not takes_counter(bodies, box, cell, r):
-            x, speed = image_near(box, load(bodies.rows, i, PLACE, r), r)
-            radius, w = flight_by_ball(bodies, i, v, speed, path, physics.timestep)
-            y = added_scaled(r, -1.0, x)
-    for k in range(len(r)):
-        flights[k, j], flights[len(r) + k, j] = y[k], w[k]
-    flights[RADIUS_OF, j] = radius
-    return cell
+    x, u, radius, r = zero, zero, BEYOND, load_scratch(flights, PLACE_OF * SCRATCH_ROW + j, zero)
+    holds = flights[PATH_OF * SCRATCH_ROW + j] + allowance < LIST_REACH
+    i = np.int64(bodies.alone[cell]) if holds else NO_BODY
+    if i != NO_BODY and not takes_counter(bodies, box, cell, r):
+        x, u = load(bodies.rows, i, PLACE, zero), load(bodies.rows, i, MEAN_VELOCITY, zero)
+        radius = of_kind(bodies, i, RADIUS) + bodies.rows[i, STRIDE]
+    store_scratch(flights, BALL_OF * SCRATCH_ROW + j, x)
+    store_scratch(flights, BALL_VELOCITY_OF * SCRATCH_ROW + j, u)
+    flights[RADIUS_OF * SCRATCH_ROW + j] = radius
 
 
 @scalar
-def load_flight(flights, first, j, zero):
-    """The place or the velocity of a candidate."""
-    for k in range(len(zero)):
-        zero = with_item(zero, k, flights[first + k, j])
-    return zero
+def passes_ball(box, flights, j, time, zero):
+    """1 where a candidate may meet the ball in its column, else 0."""
+    r, v = (
+        load_scratch(flights, PLACE_OF * SCRATCH_ROW + j, zero),
+        load_scratch(flights, VELOCITY_OF * SCRATCH_ROW + j, zero),
+    )
+    x, speed = image_near(box, load_scratch(flights, BALL_OF * SCRATCH_ROW + j, zero), r)
+    u, path = (
+        load_scratch(flights, BALL_VELOCITY_OF * SCRATCH_ROW + j, zero),
+        flights[PATH_OF * SCRATCH_ROW + j],
+    )
+    radius, w = flight_by_ball(flights[RADIUS_OF * SCRATCH_ROW + j], u, v, speed, path, time)
+    return 1.0 if meets_ball(radius, added_scaled(r, -1.0, x), w, time) else 0.0
 
 
 @scalar
