@@ -2,7 +2,8 @@
 
 Each file has `distance(p, samples, r)`: the signed distance of r from the surface, negative inside
 the solid, or something of its sign that is no larger; `normal(p, samples, r)`; and whether the
-solid is CONVEX. p is a row of WIDTH numbers, of which the first three are a place, so that all can
+solid is CONVEX. One whose distance takes long also has `nearer(p, samples, r, reach)`, whether that
+is below a reach. p is a row of WIDTH numbers, of which the first three are a place, so that all can
 be moved alike. A primitive of which bodies that move can be made also has its `extent`, its
 `width` and its `integrals`. The kind of each part is a number at run time: one compiled step serves
 every case.
@@ -42,4 +43,18 @@ def _by_kind(name: str) -> Any:
     return seldom(space[name])
 
 
-distance, normal = _by_kind("distance"), _by_kind("normal")
+def _nearer() -> Any:
+    """Whether the distance from the primitive whose number comes first is below a reach."""
+    lines, space = ["def nearer(kind, p, samples, r, reach):"], {}
+    for number, module in enumerate(PRIMITIVES):
+        quick = hasattr(module, "nearer")
+        answer = (
+            f"f{number}(p, samples, r, reach)" if quick else f"f{number}(p, samples, r) < reach"
+        )
+        lines.append(f"    if kind == {number}: return {answer}")
+        space[f"f{number}"] = module.nearer if quick else module.distance
+    exec("\n".join([*lines, "    return False"]), space)
+    return seldom(space["nearer"])
+
+
+distance, normal, nearer = _by_kind("distance"), _by_kind("normal"), _nearer()

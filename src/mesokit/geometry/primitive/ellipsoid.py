@@ -70,6 +70,27 @@ def distance(p, samples, r):
 
 
 @scalar
+def nearer(p, samples, r, reach):
+    """Whether the distance is below a reach: by bounds of it, and by itself between these.
+
+    Where r is 1 + x times as far from the centre as the surface on the same ray, the distance has
+    the sign of x. Its size is at least |x| times the shorter half, and at most the rest of the ray.
+    """
+    away, axis = offset(p, r), vector(p, 3, r)
+    height, out = dot(away, axis), length(across_axis(away, axis))
+    along, across = height / real(p, 6), out / real(p, 7)
+    times = math.sqrt(along * along + across * across)
+    rest = length(away) * (1.0 - 1.0 / max(times, 1e-300))
+    least = (times - 1.0) * min(real(p, 6), real(p, 7))
+    if min(least, rest) >= reach:
+        return False
+    if max(least, rest) < reach:
+        return True
+    c, _, _ = from_surface(p, height, out)
+    return c < reach
+
+
+@scalar
 def normal(p, samples, r):
     away, axis = offset(p, r), vector(p, 3, r)
     height, out = dot(away, axis), across_axis(away, axis)

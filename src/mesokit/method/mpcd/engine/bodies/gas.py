@@ -49,7 +49,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     THREE,
     TURN,
     add_threads,
-    distance_of,
+    is_nearer,
     load,
     of_kind,
     store,
@@ -178,7 +178,9 @@ def is_cut(bodies, i, s):
     if dot(s, s) > reach * reach:
         return False
     q = load(bodies.rows, i, TURN, FOUR)
-    return abs(distance_of(bodies, bodies.kind[i], q, s)) < HALF_DIAGONAL
+    kind = bodies.kind[i]
+    deep = is_nearer(bodies, kind, q, s, -HALF_DIAGONAL)
+    return not deep and is_nearer(bodies, kind, q, s, HALF_DIAGONAL)
 
 
 class GasCell(NamedTuple):
@@ -309,7 +311,7 @@ def gas_one_by_one(thread, counter, physics, bodies, at, key):
     kind, q = bodies.kind[at.body], load(bodies.rows, at.body, TURN, FOUR)
     for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
         s = added_scaled(uniform_place(counter, at.middle, key, j), -1.0, at.centre)
-        if distance_of(bodies, kind, q, s) < 0.0:
+        if is_nearer(bodies, kind, q, s, 0.0):
             thermal = thermal_velocity(counter, physics, key, j, bodies.gas_mass)
             drawn = GasDraw(key, j, 1, s, thermal, 0.0)
             found = added(found, put_gas(thread, counter, bodies, at, drawn))

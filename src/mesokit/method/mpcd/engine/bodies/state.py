@@ -303,6 +303,19 @@ def distance_of(bodies, kind, q, s):
 
 
 @seldom
+def is_nearer(bodies, kind, q, s, reach):
+    """Whether a place at an arm s is nearer to the surface of a body of a kind than a reach."""
+    if bodies.kinds[kind, IS_BALL] > 0.5:
+        return math.sqrt(dot(s, s)) - bodies.kinds[kind, RADIUS] < reach
+    y = rotated_back(q, s)
+    for part in range(int(bodies.kinds[kind, FIRST_PART]), int(bodies.kinds[kind, PARTS_END])):
+        p = bodies.parts + 8 * WIDTH * part
+        if primitive.nearer(bodies.part_code[part], p, bodies.parts, y, reach):
+            return True
+    return False
+
+
+@seldom
 def normal_of(bodies, part, y):
     """Unit normal out of a part at a place in the body's frame."""
     p = bodies.parts + 8 * WIDTH * part

@@ -251,8 +251,7 @@ def may_hit(bodies, physics, box, cell, r, v, path):
                 return True
         else:
             q = load(bodies.rows, i, TURN, state.FOUR)
-            c, _ = state.clearance(bodies, kind, state.rotated_back(q, away))
-            if not c > path + stride:
+            if state.is_nearer(bodies, kind, q, away, path + stride):
                 return True
     return False
 
