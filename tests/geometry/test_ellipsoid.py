@@ -65,6 +65,19 @@ def test_distance_is_that_of_the_nearest_place(d, ratio, height, radius):
     assert abs(foot) < 1e-13 * max(body.halves)
 
 
+@given(dimensions, ratios, st.floats(0, 2), st.floats(0, 2), st.floats(-2, 2))
+def test_bounds_tell_what_the_distance_tells(d, ratio, height, radius, reach):
+    """Of places at any reach, and of those almost at the distance itself."""
+    body = Body(d, ratio)
+    r = body.at(height * body.along, radius * body.across)
+    given = body.part.code, address(body.numbers), 0, tuple(r.tolist())
+    distance, _ = body.asked(r)
+    little = 1e-6 * max(body.halves)
+    assert primitive.nearer(*given, distance + little)
+    assert not primitive.nearer(*given, distance - little)
+    assert primitive.nearer(*given, reach) == (distance < reach) or abs(distance - reach) < little
+
+
 @given(dimensions, ratios, angles, st.floats(-0.99, 3))
 def test_places_along_a_normal_have_that_normal(d, ratio, angle, share):
     """Outside, and inside as far as the centre of the sharpest curvature."""
