@@ -240,8 +240,8 @@ def draw_cells_of_balls(thread, counter, physics, bodies):
     # vectors; then the entries one by one. All follow from the key of the cell alone, so it does
     # not matter which cells a batch has.
     for j in range(LANES):
-        away = added_scaled(load_scratch(work, MIDDLE * SCRATCH_ROW + j, zero), -1.0,
-                            load_scratch(work, CENTRE * SCRATCH_ROW + j, zero))  # fmt: skip
+        centre = load_scratch(work, CENTRE * SCRATCH_ROW + j, zero)
+        away = added_scaled(load_scratch(work, MIDDLE * SCRATCH_ROW + j, zero), -1.0, centre)
         mean, place = mean_in_ball(work[MEAN * SCRATCH_ROW + j], work[BALL * SCRATCH_ROW + j], away)
         work[MEAN * SCRATCH_ROW + j] = mean if j < count else 0.0
         store_scratch(work, GAS_AT * SCRATCH_ROW + j, place)
@@ -249,10 +249,10 @@ def draw_cells_of_balls(thread, counter, physics, bodies):
     place_batch(counter, work, keys[0], bodies.chosen[thread], count, zero)
     for j in range(LANES):
         m = bodies.gas_mass * max(work[NUMBER * SCRATCH_ROW + j], 1.0)
-        thermal = thermal_velocity(counter, physics, keys[0, j], 0, m)
+        thermal = thermal_noise(counter, physics, keys[0, j], 0, m)
         store_scratch(work, THERMAL * SCRATCH_ROW + j, thermal)
     for j in range(count):
-        number, key = np.int64(work[NUMBER * SCRATCH_ROW + j]), keys[0, j]
+        number, key = int(work[NUMBER * SCRATCH_ROW + j]), keys[0, j]
         if number > 0:
             centre = load_scratch(work, CENTRE * SCRATCH_ROW + j, zero)
             at = GasCell(keys[2, j], centre, work[SPEED * SCRATCH_ROW + j], centre, keys[1, j])
@@ -269,13 +269,13 @@ def place_batch(counter, work, keys, waiting, count, zero):
     left, draw = 0, 0
     for j in range(count):
         waiting[left] = j
-        left += np.int64(work[NUMBER * SCRATCH_ROW + j] > 0.5)
+        left += 1 if work[NUMBER * SCRATCH_ROW + j] > 0.5 else 0
     while left > 0 and draw < MOST_DRAWS:
         for n in range(left):
             j = waiting[n]
             middle = load_scratch(work, MIDDLE * SCRATCH_ROW + j, zero)
-            s = added_scaled(uniform_place(counter, middle, keys[j], draw), -1.0,
-                             load_scratch(work, CENTRE * SCRATCH_ROW + j, zero))  # fmt: skip
+            centre = load_scratch(work, CENTRE * SCRATCH_ROW + j, zero)
+            s = added_scaled(uniform_place(counter, middle, keys[j], draw), -1.0, centre)
             store_scratch(work, THERMAL * SCRATCH_ROW + n, s)
         still = 0
         for n in range(left):
@@ -284,7 +284,7 @@ def place_batch(counter, work, keys, waiting, count, zero):
             if not outside:
                 store_scratch(work, GAS_AT * SCRATCH_ROW + j, s)
             waiting[still] = j
-            still += np.int64(outside)
+            still += 1 if outside else 0
         left, draw = still, draw + 1
 
 
@@ -312,7 +312,7 @@ def gas_one_by_one(thread, counter, physics, bodies, at, key):
     for j in range(poisson_number(mean, counter, BODY_GAS_NUMBER, key)):
         s = added_scaled(uniform_place(counter, at.middle, key, j), -1.0, at.centre)
         if is_nearer(bodies, kind, q, s, 0.0):
-            thermal = thermal_velocity(counter, physics, key, j, bodies.gas_mass)
+            thermal = thermal_noise(counter, physics, key, j, bodies.gas_mass)
             drawn = GasDraw(key, j, 1, s, thermal, 0.0)
             found = added(found, put_gas(thread, counter, bodies, at, drawn))
     return found
@@ -337,7 +337,7 @@ class GasDraw(NamedTuple):
 
 
 @scalar
-def thermal_velocity(counter, physics, key, draw, m):
+def thermal_noise(counter, physics, key, draw, m):
     """Thermal velocity of a draw of a cell, of a mass."""
     a, b, c, e = words(counter, BODY_GAS_VELOCITY, key, draw)
     return scaled(math.sqrt(physics.kT / m), normals(physics.zero, a, b, c, e))
