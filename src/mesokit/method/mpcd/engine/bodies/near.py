@@ -48,8 +48,8 @@ LISTS_HOLD = 0.15  # cells: lists are made anew when a surface has gone so far
 PARTNERS_HOLD = 0.5  # cells: the farthest that surfaces may go with one list of partners
 PARTS = 64.0  # of a cell: what is clear is kept in whole numbers of these
 FAR = np.uint8(LIST_REACH * PARTS)
-FARTHEST, ALLOWANCE = 250, 251  # where scratch memory has how far
-# surfaces go with one list
+# Where scratch memory has how far surfaces go with one list, and how far images have slid.
+FARTHEST, ALLOWANCE, SLID = 250, 251, 252
 
 
 def kicks_fluid(bodies):
@@ -72,12 +72,12 @@ def path_of_surface(bodies, i, time):
 
 @scalar
 def keep_lists(worker, now, physics, bodies):
-    """Make lists anew if a surface has gone far since they were made."""
+    """Make lists anew if a surface has gone far since they were made, or images have slid far."""
     first, last = share(len(bodies.rows), worker.thread, worker.threads)
-    farthest = BEYOND if slides(now.box) else 0.0
+    farthest, slid = 0.0, bodies.work[worker.thread, SLID]
     for i in range(first, last):
         farthest = max(farthest, bodies.rows[i, PATH])
-    if farthest_of_all(worker, bodies, farthest) > LISTS_HOLD:
+    if farthest_of_all(worker, bodies, farthest) + slid > LISTS_HOLD:
         box = box_at_start(now, physics)
         list_by_cells(worker, box, bodies, physics.zero)
         for i in range(first, last):
@@ -85,6 +85,7 @@ def keep_lists(worker, now, physics, bodies):
         barrier(worker)
         for i in range(first, last):
             bodies.rows[i, PATH] = 0.0
+        bodies.work[worker.thread, SLID] = 0.0
 
 
 @scalar
@@ -112,7 +113,8 @@ def note_paths(worker, now, physics, bodies):
         if bodies.rows[i, PATH] > PARTNERS_HOLD and of_kind(bodies, i, state.DEPTH) > 0.0:
             note_fast(bodies.faults[worker.thread], now.counter.step, i, path / physics.timestep)
     farthest = farthest_of_all(worker, bodies, farthest)
-    bodies.work[worker.thread, ALLOWANCE] = farthest
+    bodies.work[worker.thread, ALLOWANCE] = farthest + bodies.work[worker.thread, SLID]
+    bodies.work[worker.thread, SLID] += slide_of(now.box) * physics.timestep
 
 
 @seldom
