@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mesokit import (
+    WCA,
     Box,
     Capsule,
     Case,
@@ -354,9 +355,19 @@ CASES = {
         3, [SPHERE], {"fluid": Fluid(species=[Species(1, 5), Species(1, 5)], collision=Demix())},
         "fluid.collision.rule = 'demix': not with bodies yet; use 'srd'",
     ),
-    "beads": (
-        3, [SPHERE], {"solutes": Solutes([Polymer(3)])},
-        "solutes: not with bodies yet; leave one of both out",
+    "beads that push the fluid away": (
+        3, [SPHERE], {"solutes": Solutes([Polymer(3)], coupling="potential", solvent_pair=WCA())},
+        "solutes.coupling = 'potential': not with bodies yet; expected 'collision'",
+    ),
+    "beads in a random solvent": (
+        3, [SPHERE], {"solutes": Solutes([Polymer(3)], solvent="random")},
+        "solutes.solvent = 'random': not with bodies, which a fluid moves; expected 'fluid'",
+    ),
+    "a body that beads enter": (
+        3, [SphereBody(radius=3, interaction=GapPotential(depth=0))],
+        {"solutes": Solutes([Polymer(3)])},
+        "bodies[#1].interaction.depth = 0: not with solutes, whose beads would enter the body; "
+        "expected more than 0",
     ),
 }  # fmt: skip
 

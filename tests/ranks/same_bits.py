@@ -91,6 +91,13 @@ CASES |= {
             SpheroidBody(half_length=3, radius=1.5, density=10, virtual="none"),
         ],
     ),
+    "beads beside bodies": Case(
+        run=RUN,
+        box=Box([24, 20], shear_rate=0.05),
+        fluid=Fluid(density=5, thermostat=HELD),
+        bodies=[DiskBody(radius=2, number=3), RectangleBody(size=[5, 3], density=10)],
+        solutes=Solutes(polymers=POLYMERS, bond=FENE(), pair=WCA(), mass=5.0),
+    ),
 }
 MEASURES = ("stress", "walls")
 

@@ -8,6 +8,7 @@ from tests.helpers.rank_runs import on_ranks
 
 RUNS = {"channel": (3, 1), "sheared dimers": (4, 1), "long flights": (2, 2)}  # ranks, threads
 RUNS |= {"bodies in a channel": (3, 1), "bodies in shear": (4, 2)}
+RUNS |= {"beads beside bodies": (3, 2)}
 OBSERVED = "past a post", "past a sphere", "two species", "molecules"
 
 

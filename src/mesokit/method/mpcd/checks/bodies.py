@@ -11,6 +11,7 @@ from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.body.inertia import is_inside
 from mesokit.method.mpcd.body.protocol import Body, named
 from mesokit.method.mpcd.body.union import UnionBody, moves
+from mesokit.method.mpcd.solutes import Solutes
 
 MOST_BODIES = 2**24
 MOST_FILLED = 0.9  # of the volume that walls leave
@@ -65,9 +66,23 @@ def _not_yet(case: Case) -> Iterator[str]:
     if fluid.mixed:
         yield "fluid.species: of different mass, not with bodies yet; expected one mass"
     if case.solutes is not None:
-        yield "solutes: not with bodies yet; leave one of both out"
+        yield from _beads(case, case.solutes)
     if rule.gradient_of is not None:
         yield f"fluid.collision.rule = {show(name_of(rule))}: not with bodies yet; use 'srd'"
+
+
+def _beads(case: Case, solutes: Solutes) -> Iterator[str]:
+    """Beads that collide with the fluid, and bodies that keep them out."""
+    if solutes.coupling == "potential":
+        yield "solutes.coupling = 'potential': not with bodies yet; expected 'collision'"
+    if solutes.solvent == "random":
+        yield "solutes.solvent = 'random': not with bodies, which a fluid moves; expected 'fluid'"
+    for i, kind in enumerate(case.bodies, start=1):
+        if not kind.interaction.depth:
+            yield (
+                f"bodies[#{i}].interaction.depth = 0: not with solutes, whose beads would enter "
+                "the body; expected more than 0"
+            )
 
 
 def _shape(case: Case, kind: Body) -> Iterator[str]:

@@ -168,10 +168,10 @@ class Followed(NamedTuple):
 
     def alone_in_a_cube(self) -> tuple[float, float, float] | None:
         """Radius, side and dynamic viscosity of a single no-slip ball in a periodic cube or square
-        at rest; None of anything else."""
+        at rest, without solutes; None of anything else."""
         case, d = self.case, self.case.box.dimension
         solid, coefficients = self.kind.solid(d), setting.solvent(case)
-        alone = len(case.bodies) == 1 and self.number == 1 and solid.ball
+        alone = len(case.bodies) == self.number == 1 and solid.ball and case.solutes is None
         still = not (case.walls or case.box.sheared or case.fluid.force.acts)
         sticks = self.kind.surface == "no-slip" and len(set(case.box.size)) == 1
         if not (alone and still and sticks) or coefficients is None:

@@ -51,7 +51,7 @@ def heights(of: Followed, axis: int, edges: Floats) -> Heights | None:
     case, kind = of.case, of.kind
     solid, held = kind.solid(case.box.dimension), kind.trap is not None and kind.trap.k > 0
     known = case.walls and in_balance(case, axis) and solid.ball and axis in of.moving
-    if not known or held or kind.interaction.depth == 0:
+    if not known or held or kind.interaction.depth == 0 or case.solutes is not None:
         return None
     kT, length = float(case.fluid.kT), float(case.box.size[axis])
     z = (np.arange(math.ceil(length * FINE)) + 0.5) / FINE

@@ -26,8 +26,8 @@ from mesokit.potential.thermal import mean_square
 
 
 def undisturbed(case: Case) -> bool:
-    """Whether molecules are in equilibrium at rest, and no wall is in their way."""
-    return not (case.walls or setting.flowing(case))
+    """Whether molecules are in equilibrium at rest, and no wall or body is in their way."""
+    return not (case.walls or case.bodies or setting.flowing(case))
 
 
 def mean_shape(case: Case, kind: int | str, group: Group) -> NDArray[np.float64] | None:

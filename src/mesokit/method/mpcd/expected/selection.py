@@ -163,7 +163,7 @@ def independent(case: Case, of: str, groups: list[Group]) -> bool:
     """Whether particles, or molecules as wholes, are independent of all others.
 
     They are not where walls, a driving force or demixing make the density uneven, nor where solutes
-    interact. Bodies have a size.
+    interact. Bodies have a size, which also beads feel.
     """
     solutes = case.solutes
     if of == "bodies" or case.walls or setting.driven(case) or setting.gathered(case):
@@ -172,5 +172,7 @@ def independent(case: Case, of: str, groups: list[Group]) -> bool:
         return False
     if of == "particles" or solutes is None:
         return True
+    if case.bodies:
+        return False
     beads = [kind for kind in (kind_of(case, group) for group in groups) if kind != FLUID]
     return all(solutes.ideal(solutes.index_of(kind)) for kind in beads)

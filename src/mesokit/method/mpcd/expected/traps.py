@@ -61,7 +61,7 @@ def held(case: Case, kind: int | str) -> Held | None:
         return None
     place, d = solutes.index_of(kind), case.box.dimension
     driving = any(not at_rest(case, 1 + other) for other in range(len(solutes.polymers)))
-    crowded = solutes.solvent_pair is not None and solutes.beads > 1
+    crowded = bool(case.bodies) or (solutes.solvent_pair is not None and solutes.beads > 1)
     if case.walls or case.box.sheared or fluid.force.acts or driving or crowded:
         return None
     if not solutes.ideal(place):

@@ -67,12 +67,12 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         return self.tensors(law)
 
     def square(self) -> float:
-        """Mean square length; nan in flow, between walls, and where other beads matter."""
+        """Mean square length; nan in flow, beside walls or bodies, where other beads matter."""
         case = self.case
         force = case.fluid.force
         falling = force.acts and force.uniform(case.box.dimension) is not None
         at_rest = not setting.flowing(case) or (setting.isothermal(case) and falling)
-        if case.walls or not at_rest:
+        if case.walls or case.bodies or not at_rest:
             return np.nan
         solutes = None if of_fluid(case, self.kind) else case.solutes
         ideal = solutes is None or solutes.ideal(solutes.index_of(self.kind))

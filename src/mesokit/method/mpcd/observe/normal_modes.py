@@ -81,7 +81,7 @@ class NormalModesAccumulator(BlockAccumulator):
         return self.observable.every * self.case.fluid.timestep
 
     def undisturbed(self) -> bool:
-        return not (self.case.walls or setting.flowing(self.case))
+        return not (self.case.walls or self.case.bodies or setting.flowing(self.case))
 
     def result(self) -> Result:
         every = [c.correlation(normalised=True) for c in self.correlators.values()]

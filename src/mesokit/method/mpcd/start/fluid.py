@@ -18,10 +18,10 @@ from mesokit.geometry.solids.contact import MARGIN
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 from mesokit.method.mpcd.solutes import Solutes
 from mesokit.method.mpcd.start.arrays import OfFirst, rows_of
-from mesokit.method.mpcd.start.bodies import first_bodies
+from mesokit.method.mpcd.start.bodies import GAP, first_bodies
 from mesokit.method.mpcd.start.conformation import connected, drawn, nearest_of
 from mesokit.method.mpcd.start.draws import Draws
-from mesokit.method.mpcd.start.growth import grown
+from mesokit.method.mpcd.start.growth import InFluid, grown
 from mesokit.potential.thermal import energies
 from mesokit.scalar.fixed_point import added_halves, halves
 from mesokit.scalar.random import FIRST_BEAD, INITIAL_POSITION, INITIAL_VELOCITY
@@ -30,6 +30,7 @@ Floats = NDArray[np.float64]
 Ids = NDArray[np.int64]
 FIRST_AGAIN = 2**20  # draws of this number and on are of those that were put elsewhere
 TRIES = 1000
+LEAST_GAP = 0.6  # of the range of the potential of gaps, where that is some 400 times its depth
 
 
 def stays_out(numbers: Numbers, clear: float = 0.0) -> Callable[[Floats], NDArray[np.bool_]]:
@@ -54,6 +55,23 @@ def stays_out(numbers: Numbers, clear: float = 0.0) -> Callable[[Floats], NDArra
         return good.reshape(places.shape[:-1])
 
     return outside
+
+
+def out_of_bodies(bodies: Any, in_fluid: InFluid) -> InFluid:
+    """Which of places (n, d) are in the fluid, and so far from bodies as these start apart."""
+    if bodies is None:
+        return in_fluid
+    return lambda places: in_fluid(places) & ~bodies.inside(places, GAP)
+
+
+def _require_outside(bodies: Any, places: Floats) -> None:
+    """Raise RunError for beads that start in a body, or where it repels too strongly."""
+    inside = bodies.inside(places, LEAST_GAP)
+    if inside.any():
+        raise RunError(
+            f"solutes.start.positions: bead {int(np.argmax(inside)) + 1} lies in a body, or nearer "
+            f"to it than {LEAST_GAP:g} of its interaction.range"
+        )
 
 
 def periods(numbers: Numbers) -> Floats:
@@ -97,18 +115,21 @@ def out_of_beads(numbers: Numbers, ids: Ids, places: Floats, beads: Floats) -> F
 
 
 def first_beads(
-    numbers: Numbers, solutes: Solutes, places: Any, velocities: Any, fluid_is_drawn: bool
+    engine: Any, solutes: Solutes, places: Any, velocities: Any, fluid_is_drawn: bool
 ) -> tuple[Any, Any, Any]:
     """Places and velocities (beads, d), drawn where there are none, and the drift (d,) to take off.
 
     Beads are grown where there is room, with thermal velocities. The fluid, if its velocities are
     drawn too, takes part of their momentum, so that the whole is at rest.
     """
+    numbers: Numbers = engine.numbers
     case, drift = numbers.case, np.zeros(numbers.dimension)
     kT = case.fluid.kT
+    if places is not None and engine.bodies is not None:
+        _require_outside(engine.bodies, places)
     if places is None:
         clear = nearest_of(solutes.wall.kernel(), kT) if solutes.wall else MARGIN
-        room = stays_out(numbers, clear)
+        room = out_of_bodies(engine.bodies, stays_out(numbers, clear))
         places = grown(solutes, kT, numbers.box, periods(numbers), case.run.seed, room)
     if velocities is None:
         ids = np.arange(FIRST_BEAD, FIRST_BEAD + solutes.beads)
@@ -159,14 +180,13 @@ def start(
             sums = added_halves(np.stack([sums, halves(np.rint(terms).astype(np.int64))]))
         momentum = engine.readings.joined(sums, scale)
         drifts.append(np.asarray(momentum / max(numbers.total_mass, 1e-300)))
-    if case.solutes is not None:
-        given = beads, bead_velocities
-        beads, bead_velocities, drift = first_beads(numbers, case.solutes, *given, at_rest)
-        engine.solutes.begin(beads, bead_velocities)
-        drifts.append(drift)
-
     if case.bodies:
         drifts.append(_begin_bodies(engine, at_rest))
+    if case.solutes is not None:
+        given = beads, bead_velocities
+        beads, bead_velocities, drift = first_beads(engine, case.solutes, *given, at_rest)
+        engine.solutes.begin(beads, bead_velocities)
+        drifts.append(drift)
 
     def made(first: int, last: int) -> tuple[Ids, Floats, Floats, NDArray[np.int32]]:
         ids = np.arange(first, last)

@@ -33,8 +33,25 @@ LEAST = 4  # groups for a thread: fewer do not pay for the gate
 @stage
 def move_solutes(worker, now, physics, fluid, beads):
     """Do the stages that the flags have: the pending collision, the flight, the cells."""
-    together = threads_for(worker, beads)
-    first, last = beads_of_thread(worker, together, beads)
+    collide_beads(worker, now, physics, fluid, beads)
+    if now.flags & STREAM:  # r, v: t -> t + dt; cells at t + dt
+        # ranks: owners and copies
+        assign_beads(worker, now, physics, box_before(now, physics), fluid, beads)
+        together = threads_for(worker, beads)
+        first, last = beads_of_thread(worker, together, beads)
+        if worker.thread >= together:
+            return
+        some = Worker(worker.thread, together, worker.gate, worker.clock)
+        impulse, measured = fluid.taken.impulse[worker.thread], now.flags & MEASURE_STRESS
+        moving = MovingBeads(some, beads, first, last, impulse, measured)
+        verlet(moving, now, physics, beads.potentials.substeps)
+        bin_beads(now, physics, moving)
+
+
+@scalar
+def collide_beads(worker, now, physics, fluid, beads):
+    """The pending collision of the beads of a thread, if there is one."""
+    first, last = beads_of_thread(worker, threads_for(worker, beads), beads)
     measured, halo, tensor = now.flags & MEASURE_STRESS, beads.halo, beads.tensor
     box = box_before(now, physics)
     if now.flags & COLLIDE:  # v: the collision at t
@@ -48,22 +65,18 @@ def move_solutes(worker, now, physics, fluid, beads):
                 add_bead_flux(
                     tensor[1, n // state.GROUP], beads, n, physics, now.box, now.old.shift
                 )
-    if now.flags & STREAM:  # r, v: t -> t + dt; cells at t + dt
-        assign_beads(worker, now, physics, box, fluid, beads)  # ranks: owners and copies
-        together = threads_for(worker, beads)
-        first, last = beads_of_thread(worker, together, beads)
-        if worker.thread >= together:
-            return
-        some = Worker(worker.thread, together, worker.gate, worker.clock)
-        moving = MovingBeads(some, beads, first, last, fluid.taken.impulse[worker.thread], measured)
-        verlet(moving, now, physics, beads.potentials.substeps)
-        if measured:
-            for n in range(first, last):
-                add_bead_flux(
-                    tensor[0, n // state.GROUP], beads, n, physics, now.box, now.grid.shift
-                )
-        for n in range(first, last):
-            bin_bead(beads, state.bead_of(halo, state.OWN, n), physics, now)
+
+
+@scalar
+def bin_beads(now, physics, moving):
+    """The cells of the beads of a thread at t + dt."""
+    beads = moving.beads
+    if moving.measured:
+        for n in range(moving.first, moving.last):
+            row = beads.tensor[0, n // state.GROUP]
+            add_bead_flux(row, beads, n, physics, now.box, now.grid.shift)
+    for n in range(moving.first, moving.last):
+        bin_bead(beads, state.bead_of(beads.halo, state.OWN, n), physics, now)
 
 
 @scalar

@@ -14,7 +14,7 @@ from mesokit.method.mpcd.engine.cpu.physics import field_of, kind_of_solid, mome
 from mesokit.method.mpcd.engine.domains.beads.halo import update_copies
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration
-from mesokit.scalar.jit import by_type
+from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import FIRST_BEAD
 from mesokit.scalar.vector import added_scaled, scaled
 
@@ -58,6 +58,16 @@ def _drift_among_solids(beads, i, counter, physics, time, impulse):
 
 @kick.register(MovingBeads)
 def _(moving, step, box, physics, time):
+    beads, still = moving.beads, scaled(0.0, physics.zero)
+    force = forces_of_now(moving, step, box, physics, time)
+    for n in range(moving.first, moving.last):
+        i = state.bead_of(beads.halo, state.OWN, n)
+        kick_bead(force, still, beads, i, box, physics, time)
+
+
+@scalar
+def forces_of_now(moving, step, box, physics, time):
+    """What finds the force on a bead, once all places are known and lists hold."""
     beads, worker, zero = moving.beads, moving.worker, physics.zero
     barrier(worker)
     update_copies(worker, beads)  # ranks: places of beads near other blocks
@@ -68,28 +78,26 @@ def _(moving, step, box, physics, time):
             virial = Virial(time, beads.tensor[2, n // state.GROUP], physics.stress_scale)
             each_on_bead(virial, (), beads, i, state.load_place(beads, i, zero), box)
     scale, faults = momentum_scale(physics), beads.faults[worker.thread]
-    force = BeadForce(time, moving.impulse, scale, step, faults)
-    for n in range(moving.first, moving.last):
-        kick_bead(force, beads, state.bead_of(beads.halo, state.OWN, n), box, physics, time)
+    return BeadForce(time, moving.impulse, scale, step, faults)
 
 
 @by_type
-def kick_bead(action, beads, i, box, physics, time):
-    """Change of the velocity of a bead by the forces on it."""
+def kick_bead(action, given, beads, i, box, physics, time):
+    """Change of the velocity of a bead by the forces on it, one of which is given."""
     return _kick_from_outside if len(field_of(beads, "external")) else _kick
 
 
-def _kick(action, beads, i, box, physics, time):
+def _kick(action, given, beads, i, box, physics, time):
     r, v = state.load_place(beads, i, physics.zero), state.load_velocity(beads, i, physics.zero)
-    force = each_on_bead(action, scaled(0.0, physics.zero), beads, i, r, box)
+    force = each_on_bead(action, given, beads, i, r, box)
     v = added_scaled(v, time * state.inverse_mass_of(beads, i), force)
     state.store_velocity(beads, i, accelerated(physics.field, time, r, v))
 
 
-def _kick_from_outside(action, beads, i, box, physics, time):
+def _kick_from_outside(action, given, beads, i, box, physics, time):
     """Half of the change, a turn in the magnetic field, and the other half (Boris 1970)."""
     r, v = state.load_place(beads, i, physics.zero), state.load_velocity(beads, i, physics.zero)
-    force = each_on_bead(action, scaled(0.0, physics.zero), beads, i, r, box)
+    force = each_on_bead(action, given, beads, i, r, box)
     force = from_outside(beads.external, force, i, r)
     half = 0.5 * time
     v = added_scaled(v, half * state.inverse_mass_of(beads, i), force)

@@ -38,13 +38,14 @@ def balancing_pull(case: Case) -> tuple[float, ...]:
     if not any(kind.counter_force for kind in case.bodies):
         return ()
     fluid = sum(kind.mass * kind.number for kind in case.groups[0].kinds)
+    beads = 0.0 if case.solutes is None else case.solutes.total_mass
     masses = masses_of(case)
     numbers = np.array([kind.number for kind in case.bodies])
     total = np.zeros(case.box.dimension)
     for kind in case.bodies:
         if kind.counter_force and kind.force is not None:
             total += kind.number * np.array(kind.force)
-    return tuple((-total / (fluid + float(masses @ numbers))).tolist())
+    return tuple((-total / (fluid + beads + float(masses @ numbers))).tolist())
 
 
 def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
@@ -121,17 +122,23 @@ def six(matrix: Floats) -> Floats:
 
 
 def needed_substeps(case: Case) -> int:
-    """Sub-steps in which the stiffest spring or gap turns by PHASE at most."""
-    fast, kT = 0.0, case.fluid.kT
+    """Sub-steps in which the stiffest spring or gap turns by PHASE at most, and no fewer than
+    solutes take, which move in the same ones."""
+    fast, kT, solutes, least = 0.0, case.fluid.kT, case.solutes, 1
+    if solutes is not None:
+        least = solutes.number_of_substeps(case.box.dimension, case.fluid)
     for kind, mass in zip(case.bodies, masses_of(case), strict=True):
         # the curvature where two bodies have one kT of the potential
         s = kind.interaction.range / 2 ** (1 / 6)
-        fast = max(fast, 100.0 * kind.interaction.depth * kT / s**2 * 2.0 / mass)
+        stiffness = 100.0 * kind.interaction.depth * kT / s**2
+        fast = max(fast, stiffness * 2.0 / mass)
+        if solutes is not None:
+            fast = max(fast, stiffness * (1.0 / mass + 1.0 / min(solutes.masses)))
         if kind.trap is not None:
             fast = max(fast, kind.trap.k * kT / mass)
             solid = kind.solid(case.box.dimension)
             fast = max(fast, kind.trap.angular * kT / (mass * solid.moments[2, 2] / solid.volume))
-    return max(1, math.ceil(math.sqrt(fast) * case.fluid.timestep / PHASE))
+    return max(least, math.ceil(math.sqrt(fast) * case.fluid.timestep / PHASE))
 
 
 def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = None) -> MovingBodies:

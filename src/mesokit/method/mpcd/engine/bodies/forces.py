@@ -111,6 +111,24 @@ def force_of_gap(depth, reach, gap):
 
 
 @seldom
+def force_on_place(bodies, i, s):
+    """Force on a point at an arm s from body i: repulsion by the gaps to all of its parts."""
+    depth, reach = of_kind(bodies, i, DEPTH), of_kind(bodies, i, RANGE)
+    if of_kind(bodies, i, IS_BALL) > 0.5:
+        distance = math.sqrt(dot(s, s))
+        gap = distance - of_kind(bodies, i, RADIUS)
+        return scaled(force_of_gap(depth, reach, gap) / distance, s)
+    force, q = scaled(0.0, s), load(bodies.rows, i, TURN, FOUR)
+    y = rotated_back(q, s)
+    for part in range(int(of_kind(bodies, i, FIRST_PART)), int(of_kind(bodies, i, PARTS_END))):
+        p, code = bodies.parts + 8 * WIDTH * part, bodies.part_code[part]
+        size = force_of_gap(depth, reach, primitive.distance(code, p, bodies.parts, y))
+        if size > 0.0:
+            force = added_scaled(force, size, primitive.normal(code, p, bodies.parts, y))
+    return rotated(q, force)
+
+
+@seldom
 def force_between(bodies, box, i, j, x):
     """Force and torque on body i by body j, and the separation of their centres.
 

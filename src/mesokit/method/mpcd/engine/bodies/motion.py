@@ -59,16 +59,10 @@ def begin_step(worker, now, physics, fluid, bodies):
     """
     if not now.flags & STREAM:
         return
-    rows, n = bodies.rows, bodies.substeps
-    first, last = share(len(rows), worker.thread, worker.threads)
+    n = bodies.substeps
+    first, last = share(len(bodies.rows), worker.thread, worker.threads)
     time = physics.timestep / n
-    for i in range(first, last):
-        store(rows, i, FORCE, THREE)
-        store(rows, i, TORQUE, THREE)
-        tumble(bodies, now.counter, i, physics.timestep, len(physics.zero) == 2)
-        store(rows, i, BEGIN, load(rows, i, PLACE, THREE))
-        store(rows, i, BEGIN_TURN, load(rows, i, TURN, FOUR))
-    keep_lists(worker, now, physics, bodies)
+    note_beginning(worker, now, physics, bodies)
     # Kick, drift, kick: forces at the beginning of a sub-step are those at the end of the last.
     # Threads meet after each drift, because forces need the places of all bodies.
     for i in range(first, last):
@@ -81,6 +75,27 @@ def begin_step(worker, now, physics, fluid, bodies):
         for i in range(first, last):
             kick_body(worker, now, physics, fluid, bodies, i, (0.5 if k == n - 1 else 1.0) * time)
         barrier(worker)
+    begin_motions(worker, now, physics, bodies)
+
+
+@scalar
+def note_beginning(worker, now, physics, bodies):
+    """Where the bodies of a thread are at t; lists of what is near them."""
+    rows = bodies.rows
+    first, last = share(len(rows), worker.thread, worker.threads)
+    for i in range(first, last):
+        store(rows, i, FORCE, THREE)
+        store(rows, i, TORQUE, THREE)
+        tumble(bodies, now.counter, i, physics.timestep, len(physics.zero) == 2)
+        store(rows, i, BEGIN, load(rows, i, PLACE, THREE))
+        store(rows, i, BEGIN_TURN, load(rows, i, TURN, FOUR))
+    keep_lists(worker, now, physics, bodies)
+
+
+@scalar
+def begin_motions(worker, now, physics, bodies):
+    """The motion of each body that the fluid sees, once all sub-steps are done."""
+    first, last = share(len(bodies.rows), worker.thread, worker.threads)
     for i in range(first, last):
         begin_motion(bodies, physics, i)
     note_paths(worker, now, physics, bodies)

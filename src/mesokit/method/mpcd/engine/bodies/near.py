@@ -341,3 +341,12 @@ def bodies_near(bodies, cell):
 def body_near(bodies, cell, n):
     """The nth of them."""
     return np.int64(n) if cell == EVERY_BODY else np.int64(bodies.near[cell, n])
+
+
+@scalar
+def farthest_gap(bodies):
+    """The largest gap at which any body repels."""
+    farthest = 0.0
+    for kind in range(len(bodies.kinds)):
+        farthest = max(farthest, bodies.kinds[kind, RANGE])
+    return farthest

@@ -17,29 +17,39 @@ from mesokit.method.mpcd.engine.bodies.allocate import masses_of
 from mesokit.method.mpcd.engine.bodies.near import (
     LISTS_HOLD,
     PARTNERS_HOLD,
+    bodies_near,
+    body_near,
     cell_of,
+    farthest_gap,
     list_by_cells,
+    list_of,
 )
-from mesokit.method.mpcd.engine.bodies.outside import deepest
 from mesokit.method.mpcd.engine.bodies.state import (
     ANGLE,
     BOXES,
     CAUGHT,
-    EVERY_BODY,
     FORCE,
+    FOUR,
     HOME,
     PATH,
     PLACE,
     PUT_BACK,
+    RADIUS,
+    RANGE,
     SECOND_HITS,
     SPIN,
     STILL_HITTING,
     TORQUE,
     TURN,
     VELOCITY,
+    image_near,
+    is_nearer,
+    load,
+    of_kind,
 )
 from mesokit.method.mpcd.engine.embedded.state import STEP, WHAT, WHICH
-from mesokit.scalar.vector import row, scaled
+from mesokit.scalar.jit import seldom
+from mesokit.scalar.vector import added_scaled, dot, row, scaled
 
 Floats = NDArray[np.float64]
 ALONE = Worker(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
@@ -175,12 +185,11 @@ class BodyReadings:
         rows[:, VELOCITY : VELOCITY + d], rows[:, SPIN : SPIN + 3] = velocities, spins
         rows[:, PATH] = MAKE_LISTS
 
-    def inside(self, places: Floats) -> NDArray[np.bool_]:
-        """Which of places (n, d) are in a body."""
+    def inside(self, places: Floats, part: float = 0.0) -> NDArray[np.bool_]:
+        """Which of places (n, d) are in a body, or nearer to one than this part of its range."""
         found, zero = np.zeros(len(places), bool), self.memory.physics.zero
-        mark_inside(
-            ALONE, self.memory.box, self.state_of, zero, np.ascontiguousarray(places), found
-        )
+        places = np.ascontiguousarray(places)
+        mark_inside(ALONE, self.memory.box, self.state_of, zero, places, part, found)
         return found
 
     def state(self) -> dict[str, NDArray[Any]]:
@@ -230,14 +239,25 @@ class BodyReadings:
 
 
 @kernel
-def mark_inside(worker, box, bodies, zero, places, found):
-    """Note which places are in a body."""
+def mark_inside(worker, box, bodies, zero, places, part, found):
+    """Note which places are in a body, or nearer to one than a part of its range."""
     list_by_cells(worker, box, bodies, zero)
+    reach = part * farthest_gap(bodies)
     for n in range(len(places)):
         r = row(places, n, zero)
         r, _, _ = fold(box, r, zero, scaled(0.0, zero))
-        cell = np.int64(cell_of(bodies, box, r))
-        if bodies.near_count[cell] == EVERY_BODY:
-            cell = np.int64(EVERY_BODY)
-        depth, _ = deepest(box, bodies, cell, r)
-        found[n] = depth < 0.0
+        cell = list_of(bodies, np.int64(cell_of(bodies, box, r)), reach)
+        for k in range(bodies_near(bodies, cell)):
+            i = body_near(bodies, cell, k)
+            gap = part * of_kind(bodies, i, RANGE)
+            found[n] |= is_within(box, bodies, i, r, gap)
+
+
+@seldom
+def is_within(box, bodies, i, r, gap):
+    """Whether a place is nearer to body i than a gap, or in it."""
+    x, _ = image_near(box, load(bodies.rows, i, PLACE, r), r)
+    s, reach = added_scaled(r, -1.0, x), of_kind(bodies, i, RADIUS) + gap
+    if dot(s, s) >= reach * reach:
+        return False
+    return is_nearer(bodies, bodies.kind[i], load(bodies.rows, i, TURN, FOUR), s, gap)

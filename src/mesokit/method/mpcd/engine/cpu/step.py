@@ -49,7 +49,7 @@ def stream(worker, now, physics, fluid, suspended):
     that act by a potential."""
     if len(field_of(suspended, "bodies")) > 0:
         return lambda worker, now, physics, fluid, suspended: stream_with_bodies(
-            worker, now, physics, fluid, suspended.bodies
+            worker, now, physics, fluid, suspended
         )
     if is_embedded(field_of(suspended, "beads")):
         return lambda worker, now, physics, fluid, suspended: stream_around(
@@ -59,14 +59,21 @@ def stream(worker, now, physics, fluid, suspended):
 
 
 @by_type
-def move_beads(worker, now, physics, fluid, beads):
-    """The solutes' part (see `beads.flight.move_solutes`), with the fluid near them."""
-    if not is_embedded(beads):
-        return lambda *given: move_solutes(*given)
+def move_beads(worker, now, physics, fluid, suspended):
+    """The solutes' part (see `beads.flight.move_solutes`), with the fluid near them.
 
-    def together(worker, now, physics, fluid, beads):
-        move_in_fluid(worker, now, physics, fluid, beads)
-        put_back(worker, now, physics, fluid, beads)
+    Beside bodies they have moved already, with these (`beads.among_bodies`).
+    """
+    if len(field_of(suspended, "bodies")) > 0:
+        return lambda worker, now, physics, fluid, suspended: None
+    if not is_embedded(field_of(suspended, "beads")):
+        return lambda worker, now, physics, fluid, suspended: move_solutes(
+            worker, now, physics, fluid, suspended.beads
+        )
+
+    def together(worker, now, physics, fluid, suspended):
+        move_in_fluid(worker, now, physics, fluid, suspended.beads)
+        put_back(worker, now, physics, fluid, suspended.beads)
 
     return together
 
@@ -110,7 +117,7 @@ def step(worker, now, physics, fluid, suspended, walls):
     beads = suspended.beads
     stream(worker, now, physics, fluid, suspended)  # v: collision at t; r, v: t -> t + dt; sums
     lap(worker, SWEEP)
-    move_beads(worker, now, physics, fluid, beads)  # the same for solutes, in sub-steps
+    move_beads(worker, now, physics, fluid, suspended)  # the same for solutes, in sub-steps
     lap(worker, BEADS)
     fill_solids(worker, now, physics, fluid, suspended, walls)  # virtual particles at t + dt
     barrier(worker)
@@ -143,7 +150,7 @@ def advance(worker, course, physics, fluid, suspended, walls):
     if n > 0:
         now = last_collision(course, now)
         stream(worker, now, physics, fluid, suspended)
-        move_beads(worker, now, physics, fluid, suspended.beads)
+        move_beads(worker, now, physics, fluid, suspended)
         barrier(worker)
         lap(worker, FINISH)
 

@@ -40,7 +40,7 @@ from mesokit.scalar.pointer import (
     whole,
     word,
 )
-from mesokit.scalar.vector import dot
+from mesokit.scalar.vector import dot, scaled
 
 
 class MovingBead(NamedTuple):
@@ -120,7 +120,7 @@ def _(moving, step, box, physics, time):
         virial = Virial(time, tensor_row(beads, 2, i, zero), physics.stress_scale)
         each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
     force = BeadForce(time, moving.impulse, momentum_scale(physics), step, beads.faults)
-    kick_bead(force, beads, i, box, physics, time)
+    kick_bead(force, scaled(0.0, zero), beads, i, box, physics, time)
 
 
 @by_type
