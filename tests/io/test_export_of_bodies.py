@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import gsd.hoomd
 import h5py
 import numpy as np
 import pytest
 
 import mesokit
-from mesokit import CaseError, every
+from mesokit import CaseError, MaxwellBoltzmann, Polymer, Run, Solutes, every
 from mesokit.case.trajectory import Trajectory
 from mesokit.geometry import region
 from mesokit.method.mpcd.body.drawn import drawn_as
 from mesokit.run.simulation import Simulation
+from tests.helpers.bodies import body
 from tests.helpers.moving_disks import moving_disks, with_a_plank
+from tests.helpers.small_fluids import make_case
 
 pytestmark = pytest.mark.usefixtures("no_figures")
 FIELDS = ("position", "velocity", "orientation", "spin", "image", "id")
@@ -162,3 +166,33 @@ def test_a_union_is_a_mesh_whose_faces_look_outward():
     flat = drawn_as(parts_of(*bricks), 2)
     a, b, c = np.array(flat["vertices"])[np.array(flat["indices"])].swapaxes(0, 1)
     assert np.cross(b - a, c - a)[:, 2].sum() / 2 == pytest.approx(9 + 4)
+
+
+def beside_beads(of):
+    """A few steps of beads beside a disk and a rectangle, with all fields of bodies kept."""
+    kept = Trajectory(every=5, of=of, fields=FIELDS, precision="float64")
+    beads, bodies = Solutes([Polymer(number=7)], mass=5.0), [body("disk", 2), body("rectangle", 2)]
+    held = {"timestep": 0.1, "thermostat": MaxwellBoltzmann()}
+    case = make_case((26, 24), bodies=bodies, solutes=beads, trajectory=kept, **held)
+    return dataclasses.replace(case, run=Run(steps=10))
+
+
+def test_a_trajectory_of_all_that_is_suspended_has_beads_and_bodies(tmp_path):
+    simulation = Simulation(beside_beads("suspended"), output=tmp_path / "run", threads=1)
+    simulation.run()
+    frames, engine = mesokit.open(tmp_path / "run").trajectory, simulation.engine
+    assert frames.id.tolist() == (simulation.case.particles + np.arange(9)).tolist()
+    assert frames.species.tolist() == [1] * 7 + [2, 3]
+    np.testing.assert_array_equal(frames.read("position")[-1], engine.positions(frames.id))
+    turned, spins = frames.read("orientation")[-1], frames.read("spin")[-1]
+    np.testing.assert_array_equal(turned[:7], np.eye(4)[[0] * 7])
+    np.testing.assert_array_equal(turned[7:], engine.bodies.orientations)
+    np.testing.assert_array_equal(spins, [0.0] * 7 + engine.bodies.spins[:, 2].tolist())
+
+
+def test_beads_alone_have_no_orientation():
+    with pytest.raises(CaseError, match="solutes of method 'mpcd' have no 'orientation'"):
+        beside_beads("solutes")
+    case = beside_beads("suspended")
+    with pytest.raises(CaseError, match=r"trajectory\.of = 'suspended': expected 'all'"):
+        dataclasses.replace(case, bodies=())

@@ -9,7 +9,7 @@ from typing import Any, get_args
 from mesokit.case.box import AXES
 from mesokit.case.component import is_component, name_of, nearest, one_of, show
 from mesokit.case.registry import family_of
-from mesokit.case.trajectory import Group, Quantity, written
+from mesokit.case.trajectory import SUSPENDED, Group, Quantity, written
 from mesokit.errors import CaseError
 
 MOST_BINS = 2**24  # of one observable: some gigabytes
@@ -133,7 +133,7 @@ def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
     given = case.trajectory
     if given is None:
         return
-    known = ["all", *(group.name for group in groups)]
+    known = ["all", *(group.name for group in groups), *([SUSPENDED] if len(groups) > 2 else [])]
     number, _ = written(given, groups)
     noun = groups[0].noun if groups else "particle"
     if given.of not in known:
@@ -146,8 +146,10 @@ def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
         yield f"trajectory.subset = {given.subset}: a lattice is written whole; leave it out"
     if len(set(given.fields)) < len(given.fields):
         yield f"trajectory.fields = {show(given.fields)}: expected each field once"
+    # all that is suspended has what bodies have: beads have the orientation of the box and no spin
+    last = groups[-1].name if given.of == SUSPENDED and groups else given.of
     for group in groups:
-        for field in given.fields if given.of in ("all", group.name) else ():
+        for field in given.fields if last in ("all", group.name) else ():
             if field not in group.has:
                 have = [name for name in get_args(Quantity) if name in group.has]
                 yield (

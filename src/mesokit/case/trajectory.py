@@ -31,6 +31,9 @@ class Kind(NamedTuple):
     shape: Mapping[str, Any] | None = None
 
 
+SUSPENDED = "suspended"  # all groups but the first
+
+
 class Group(NamedTuple):
     """Particles with consecutive numbers, such as a fluid or its solutes, kind after kind.
 
@@ -74,7 +77,9 @@ class Trajectory:
         le=1000,
     )
     of: str = param(
-        "all", doc='whose particles: "all", or, of MPCD, "fluid", "solutes" or "bodies"'
+        "all",
+        doc='whose particles: "all", or, of MPCD, "fluid", "solutes", "bodies" or, both of these, '
+        '"suspended"',
     )
     fields: Many[Quantity] = param(("position",), doc="what is written", min_length=1)
     subset: int | None = param(
@@ -133,6 +138,8 @@ def written(trajectory: Trajectory, groups: Sequence[Group]) -> tuple[int, int]:
     >>> written(Trajectory(every=1, of="solutes"), [fluid, solutes])
     (10, 90)
     """
+    if trajectory.of == SUSPENDED:
+        return sum(group.number for group in groups[1:]), groups[0].number
     first = 0
     for group in groups:
         if group.name == trajectory.of:

@@ -113,7 +113,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         mean_free_path=setting.mean_free_path(case),
         transport=transport,
         solvent=setting.solvent(case),
-        suspended="bodies" if case.solutes is None else "solutes",
+        suspended=suspended_in(case),
         flow=flow,
         flow_speed=speed,
         flow_bound=bound,
@@ -173,6 +173,12 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     if numbers.trajectory:
         rows.append(("trajectory", size_text(numbers.trajectory), "estimate"))
     return Summary(tuple(rows), numbers.warnings, numbers.seconds, numbers.record(), numbers.memory)
+
+
+def suspended_in(case: Case) -> str:
+    """What is in the fluid, in words."""
+    found = {"solutes": case.solutes is not None, "bodies": bool(case.bodies)}
+    return " and ".join(name for name, there in found.items() if there)
 
 
 def body_rows(case: Case) -> list[Row]:

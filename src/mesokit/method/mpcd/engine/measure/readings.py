@@ -189,14 +189,17 @@ class Readings:
         return kind
 
     def orientations(self, ids: NDArray) -> Floats:
-        """Unit quaternions (n, 4) of bodies, by particle id."""
+        """Unit quaternions (n, 4) of bodies, by particle id; beads have that of the box."""
         bodies, rows = self._rows_of_bodies(ids)
-        return bodies.orientations[rows]
+        return np.where(
+            rows[:, None] < 0, [1.0, 0.0, 0.0, 0.0], bodies.orientations[np.maximum(rows, 0)]
+        )
 
     def spins(self, ids: NDArray) -> Floats:
-        """Angular velocities of bodies, by particle id: (n,) about z in 2D, (n, 3) in 3D."""
+        """Angular velocities of bodies, by particle id: (n,) about z in 2D, (n, 3) in 3D; beads
+        have none."""
         bodies, rows = self._rows_of_bodies(ids)
-        found = bodies.spins[rows]
+        found = np.where(rows[:, None] < 0, 0.0, bodies.spins[np.maximum(rows, 0)])
         return found[:, 2] if self.dimension == 2 else found
 
     def _rows_of_bodies(self, ids: NDArray) -> tuple[BodyReadings, NDArray[np.int64]]:
