@@ -363,6 +363,12 @@ CASES = {
         3, [SPHERE], {"solutes": Solutes([Polymer(3)], solvent="random")},
         "solutes.solvent = 'random': not with bodies, which a fluid moves; expected 'fluid'",
     ),
+    "a gap that is too stiff for beads": (
+        3, [SphereBody(radius=3, interaction=GapPotential(depth=1e6))],
+        {"solutes": Solutes([Polymer(3)], mass=0.01)},
+        "bodies: the stiffest gap of a bead needs 224494 sub-steps in a timestep; expected at most "
+        "100000: less interaction.depth, heavier beads (solutes.mass), or a shorter fluid.timestep",
+    ),
     "a body that beads enter": (
         3, [SphereBody(radius=3, interaction=GapPotential(depth=0))],
         {"solutes": Solutes([Polymer(3)])},

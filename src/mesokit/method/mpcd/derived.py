@@ -13,6 +13,7 @@ from mesokit.case.trajectory import stored_bytes
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.body.protocol import named
+from mesokit.method.mpcd.body.substeps import needed_substeps
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.expected.heating import heating
 from mesokit.method.mpcd.expected.molecules import longest_relaxation
@@ -90,6 +91,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     if case.solutes is not None:
         beads = case.solutes.beads
         flights = case.solutes.number_of_substeps(dimension, fluid)
+        flights = needed_substeps(case) if case.bodies else flights
         substeps = flights if fluid.molecule is None else substeps
         bead_seconds = beads * (BEAD + BEAD_SUBSTEP * flights) * steps
     rate /= 1 + _near_bodies(case) / max(case.particles, 1)

@@ -10,7 +10,9 @@ from mesokit.geometry.shape_protocol import Simple, closed_axes
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.body.inertia import is_inside
 from mesokit.method.mpcd.body.protocol import Body, named
+from mesokit.method.mpcd.body.substeps import needed_substeps
 from mesokit.method.mpcd.body.union import UnionBody, moves
+from mesokit.method.mpcd.molecule import MOST_SUBSTEPS
 from mesokit.method.mpcd.solutes import Solutes
 
 MOST_BODIES = 2**24
@@ -53,6 +55,12 @@ def bodies(case: Case) -> Iterator[str]:
         yield (
             f"bodies: they fill {filled:.4g} of {room:.4g} cells; expected at most "
             f"{MOST_FILLED:.0%}: fewer or smaller bodies"
+        )
+    if case.solutes is not None and (need := needed_substeps(case)) > MOST_SUBSTEPS:
+        yield (
+            f"bodies: the stiffest gap of a bead needs {need} sub-steps in a timestep; expected at "
+            f"most {MOST_SUBSTEPS}: less interaction.depth, heavier beads (solutes.mass), or a "
+            "shorter fluid.timestep"
         )
 
 

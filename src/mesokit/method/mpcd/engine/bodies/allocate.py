@@ -12,6 +12,7 @@ from mesokit.case.case import Case
 from mesokit.geometry.solids.solids import Solids
 from mesokit.loops.layout import LANES, SCRATCH_ROW, zeros
 from mesokit.method.mpcd.body.protocol import Body, Squirming
+from mesokit.method.mpcd.body.substeps import needed_substeps
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.state import MovingBodies
 from mesokit.method.mpcd.engine.cpu.grid import Grid
@@ -22,7 +23,6 @@ from mesokit.scalar.pointer import address
 FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
 NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a run
 ROOM = 2.0  # times as many particles near bodies as there are on average
-PHASE = 0.1  # of the fastest motion of bodies, in radians per sub-step
 MASS_BITS = 40
 Floats = NDArray[np.float64]
 
@@ -119,26 +119,6 @@ def row_of(kind: Body, mass: float, case: Case, first_part: int) -> Floats:
 def six(matrix: Floats) -> Floats:
     """A symmetric matrix as xx, yy, zz, xy, xz, yz."""
     return matrix[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-
-
-def needed_substeps(case: Case) -> int:
-    """Sub-steps in which the stiffest spring or gap turns by PHASE at most, and no fewer than
-    solutes take, which move in the same ones."""
-    fast, kT, solutes, least = 0.0, case.fluid.kT, case.solutes, 1
-    if solutes is not None:
-        least = solutes.number_of_substeps(case.box.dimension, case.fluid)
-    for kind, mass in zip(case.bodies, masses_of(case), strict=True):
-        # the curvature where two bodies have one kT of the potential
-        s = kind.interaction.range / 2 ** (1 / 6)
-        stiffness = 100.0 * kind.interaction.depth * kT / s**2
-        fast = max(fast, stiffness * 2.0 / mass)
-        if solutes is not None:
-            fast = max(fast, stiffness * (1.0 / mass + 1.0 / min(solutes.masses)))
-        if kind.trap is not None:
-            fast = max(fast, kind.trap.k * kT / mass)
-            solid = kind.solid(case.box.dimension)
-            fast = max(fast, kind.trap.angular * kT / (mass * solid.moments[2, 2] / solid.volume))
-    return max(least, math.ceil(math.sqrt(fast) * case.fluid.timestep / PHASE))
 
 
 def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = None) -> MovingBodies:
