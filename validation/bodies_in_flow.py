@@ -1,0 +1,546 @@
+"""Bodies in a flow: drag, slip, rotation, shear, slits, long bodies, pairs, settling, swimmers.
+
+Usage: python validation/bodies_in_flow.py [parts...] [--short]
+
+Parts are those of `PARTS`, all unless said.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from common import BLUE, GREY, PURPLE, RED, Page, found, main, plt, renamed
+from moving_bodies import (
+    PLATES,
+    PREFACE,
+    SLIP,
+    VISCOSITIES,
+    WARMUP,
+    case_of,
+    coefficients,
+    fluid,
+    met,
+    ran,
+    recorded,
+    share_of,
+    steps,
+    viscosity,
+)
+from scipy.optimize import brentq
+
+from mesokit import (
+    BodyDrift,
+    BodyStart,
+    Box,
+    CapsuleBody,
+    Case,
+    Comparison,
+    DiskBody,
+    EllipseBody,
+    Plates,
+    Run,
+    SphereBody,
+    SpheroidBody,
+    Squirming,
+    Stress,
+    theory,
+)
+
+SLIPS: list[tuple[str, str, float, float, float]] = []  # by what, where, b, error, of plates
+LEFT_OUT = (
+    ("D + U^2/(d (d - 1) D_r) of swimmers; swimmers at a wall",
+     "runs of many times 1/D_r, 1000 time units at R = 3"),
+    ("spheroid in the shear plane, 3D", "2D ellipses take its place"),
+)  # fmt: skip
+
+
+# ---------------------------------------------------------------- slip
+
+
+def viscosities(page: Page) -> None:
+    """The viscosities that stand in theory."""
+    page.heading("Viscosities")
+    page.text(
+        "Theory below has kinematic viscosities that were measured under shear "
+        "([viscosity_rules](viscosity_rules.md)), as those of molecular chaos are up to 7 % too "
+        "low for rules +a. That of SRD+a in 3D at 90 degrees is measured here, in a cube of side "
+        "16 at the shear rate 0.1."
+    )
+    rows = []
+    for (rule, d), (value, error) in VISCOSITIES.items():
+        note = "from viscosity_rules"
+        if (rule, d) == ("srd+a", 3):
+            case = Case(
+                run=Run(steps=steps(1e4), warmup=500, seed=5), observe=[Stress(every=1)],
+                box=Box([16] * 3, shear_rate=0.1), fluid=fluid(rule),
+            )  # fmt: skip
+            files, note = ran(page, "viscosity-srd+a-3", case)
+            c = found(files["stress"], "viscosity")
+            value, error = c.measured, c.error
+        chaos = float(coefficients(rule, d).viscosity)
+        rows.append(Comparison(f"{d}D, {rule}: viscosity; theory: molecular chaos", value, error,
+                               chaos, "a^2/tau", note))  # fmt: skip
+    page.table(rows)
+
+
+def rotation(page: Page) -> None:
+    """Angular velocity over torque, and the slip length that it tells."""
+    page.heading("Rotational mobility and slip, with and without angular momentum")
+    page.text(
+        "R = 3 under a torque, side 16 in 3D and 24 in 2D. Rules +a: the mobility is (1 - phi + d "
+        "b/R) times that of a wide fluid, so that the slip length b follows from it. The error "
+        "bar of the viscosity is in that of b: 1 % of it is 0.010 cells in 3D and 0.015 in 2D. "
+        "Theory of the mobility has this b, so that only its row of SRD is a test. SRD does not "
+        "keep angular momentum; theory has a factor for that in the limit of a large body, and "
+        "the slip length of plates."
+    )
+    rows = []
+    for d, rule, length, torque in (
+        (2, "at+a", 1.5e5, 40.0), (2, "srd+a", 1.5e5, 40.0), (3, "at+a", 1.5e4, 240.0),
+        (3, "srd+a", 1.5e4, 240.0), (3, "srd", 1.2e4, 180.0),
+    ):  # fmt: skip
+        body = DiskBody(radius=3, torque=torque) if d == 2 else SphereBody(
+            radius=3, torque=(0.0, 0.0, torque)
+        )  # fmt: skip
+        side = 24 if d == 2 else 16
+        case = case_of(body, side, rule, length, BodyDrift())
+        files, note = ran(page, f"rotation-{d}-{rule}", case)
+        c, eta = found(files["body-drift"], "rotational mobility"), viscosity(rule, d)
+        known = 1 / theory.rotational_friction(3, eta, d, side, SLIP[rule, d], share_of(rule, d))
+        rows.append(renamed(c, f"{d}D, {rule}: rotational mobility", note, known))
+        if "+a" in rule:
+            unit = (4 if d == 2 else 8) * math.pi * eta * 3.0**d
+            left = 1 - body.solid(d).volume / side**d
+            b, unsure = 3 / d * (unit * c.measured - left), VISCOSITIES[rule, d]
+            error = math.hypot(c.error / c.measured, unsure[1] / unsure[0])
+            rows.append(slip_row("rotation", d, rule, b, 3 / d * unit * c.measured * error))
+        else:
+            met(page, rows[-1].what, rows[-1], 5)
+    page.table(rows)
+
+
+def swimming(page: Page) -> None:
+    """Speed of neutral squirmers, and the slip length that it tells."""
+    page.heading("Swimming speed and slip")
+    page.text(
+        "A neutral squirmer (B1 = 0.15, B2 = 0) of R = 3 in a periodic square of side 30 or cube "
+        "of side 16. Its flow is a potential flow, so that the law holds at any Reynolds number. A "
+        "slip length b lowers the speed to (1 - phi) U/(1 + (2 - c) b/R) with U = B1/2 in 2D and 2 "
+        "B1/3 in 3D. So b follows from the speed, without the viscosity. The Mach number is 0.07 "
+        "in 2D and 0.09 in 3D: compression may change the speed by its square, 0.5 to 0.8 %, which "
+        "is 0.01 cells of b, and is not in the error bars. Theory of the speed has the slip length "
+        "that rotation gives, and that of plates for SRD."
+    )
+    rows = []
+    for d, rule, length in (
+        (2, "at+a", 3e4), (2, "srd+a", 3e4), (3, "at+a", 6e3), (3, "srd+a", 6e3),
+        (3, "srd", 6e3),
+    ):  # fmt: skip
+        kind, side = (DiskBody, 30) if d == 2 else (SphereBody, 16)
+        body = kind(radius=3, swim=Squirming(B1=0.15))
+        case = case_of(body, side, rule, length, BodyDrift())
+        files, note = ran(page, f"swim-{d}-{rule}", case)
+        c = found(files["body-drift"], "velocity along its own axis")
+        share, fraction = share_of(rule, d), body.solid(d).volume / side**d
+        wide = theory.squirmer_speed(0.15, d)
+        full = theory.squirmer_speed_in_box(wide, fraction)
+        known = theory.squirmer_speed_in_box(wide, fraction, SLIP[rule, d] / 3, share)
+        b, error = 3 / (2 - share) * (full / c.measured - 1), 3 / (2 - share) * full * c.error
+        rows.append(renamed(c, f"{d}D, {rule}: swimming speed", note, known))
+        rows.append(slip_row("swimming", d, rule, b, error / c.measured**2))
+        met(page, rows[-2].what, rows[-2], 3)
+    page.table(rows)
+
+
+def drag(page: Page) -> None:
+    """Mobility of a drawn ball, and the slip length that it tells."""
+    page.heading("Drag of a sphere and a disk, and slip by drag")
+    page.text(
+        "R = 3, drawn by a force with counter-force, in the boxes of the swimmers. Theory is "
+        "Sangani and Acrivos with the slip length that rotation gives (SRD: that of plates) and "
+        "the viscosity of the table. The slip length by drag is the least certain one: 1 % of "
+        "mobility or viscosity is 0.04 to 0.06 cells."
+    )
+    rows = []
+    for d, rule, length, force in (
+        (2, "at+a", 3e4, 3.0), (2, "srd+a", 3e4, 3.0), (3, "at+a", 5e3, 30.0),
+        (3, "srd+a", 5e3, 30.0), (3, "srd", 5e3, 30.0),
+    ):  # fmt: skip
+        kind, side = (DiskBody, 30) if d == 2 else (SphereBody, 16)
+        body = kind(radius=3, force=(force, *[0.0] * (d - 1)), counter_force=True)
+        case = case_of(body, side, rule, length, BodyDrift())
+        files, note = ran(page, f"drag-{d}-{rule}", case)
+        c, eta = found(files["body-drift"], "mobility along x"), viscosity(rule, d)
+        friction = theory.disk_friction_in_square if d == 2 else theory.sphere_friction_in_cube
+        reynolds = c.measured * force * 3 / VISCOSITIES[rule, d][0]
+        rows.append(renamed(c, f"{d}D, {rule}: mobility", f"Re {reynolds:.2f}; {note}",
+                            1 / friction(3.0, side, eta, SLIP[rule, d])))  # fmt: skip
+        met(page, rows[-1].what, rows[-1], 5)
+        b, low, high = (slip_of(c.measured + k * c.error, friction, side, eta) for k in (0, -1, 1))
+        rows.append(slip_row("drag", d, rule, b, 0.5 * (high - low)))
+    page.table(rows)
+
+
+def slip_of(mobility: float, friction: Any, side: float, eta: float) -> float:
+    """The slip length at which theory has this mobility; its line goes on below zero."""
+    free, some = (1 / friction(3.0, side, eta, b) for b in (0.0, 0.3))
+    if mobility < free:
+        return float(0.3 * (mobility - free) / (some - free))
+    most = 1 / friction(3.0, side, eta, 50.0)
+    if mobility >= most:
+        return math.nan
+    return float(brentq(lambda b: 1 / friction(3.0, side, eta, b) - mobility, 0.0, 50.0))
+
+
+def slip_row(by: str, d: int, rule: str, b: float, error: float) -> Comparison:
+    """A row of a slip length, which is kept for the figure."""
+    SLIPS.append((by, f"{d}D\n{rule}", b, error, PLATES[d]))
+    return Comparison(f"{d}D, {rule}: slip length b by {by}", b, error, PLATES[d], "a", "of plates")
+
+
+def slip_lengths(page: Page) -> None:
+    """All slip lengths of the parts before."""
+    fig, axis = plt.subplots(figsize=(6, 3.8))
+    names = list(dict.fromkeys(row[1] for row in SLIPS))
+    for by, colour, mark, shift in (
+        ("rotation", PURPLE, "o", -0.15), ("swimming", BLUE, "s", 0.0), ("drag", RED, "^", 0.15),
+    ):  # fmt: skip
+        rows = [row for row in SLIPS if row[0] == by]
+        axis.errorbar([names.index(row[1]) + shift for row in rows], [row[2] for row in rows],
+                      [row[3] for row in rows], fmt=mark, color=colour, mfc="white", ms=5,
+                      label=f"by {by}")  # fmt: skip
+    plates = [next(row[4] for row in SLIPS if row[1] == name) for name in names]
+    axis.plot(range(len(names)), plates, "_", ms=28, color=GREY, label="plates in SRD")
+    axis.axhline(0, color=GREY, lw=0.5)
+    axis.set(xticks=range(len(names)), xticklabels=names, ylabel="slip length", xlim=(-0.5, 4.5))
+    axis.legend(fontsize=7)
+    page.figure(fig, "Slip lengths at R = 3 by three ways. Error bars: one standard error; the "
+                "viscosity is in those of rotation alone.", "_slip")  # fmt: skip
+
+
+# ---------------------------------------------------------------- shear
+
+
+def shear(page: Page) -> None:
+    """Turning in a shear flow and periods of Jeffery."""
+    page.heading("Shear: turning, Jeffery periods")
+    page.text(
+        "Lees-Edwards shear, AT+a. Theory: half the rate for a sphere or disk; the mean angular "
+        "velocity of an ellipse is rate/(r + 1/r), which is that of Jeffery's period 2 pi (r + "
+        "1/r)/rate. Noise turns an ellipse too, with D_r = kT/(2 pi eta (a^2 + b^2)) in a wide "
+        "fluid: the mean of Jeffery's angular velocity over the steady distribution of angles "
+        "stands as theory. Re is rate R^2/nu, with the half length of an ellipse; its first "
+        "effect is to slow the turning, and more so a longer body. Each ellipse makes some ten "
+        "turns, so that error bars may be too small."
+    )
+    rows = []
+    for name, body, side, length, rate in (
+        ("disk R = 2", DiskBody(radius=2), 20, 1.2e5, 0.04),
+        ("sphere R = 2", SphereBody(radius=2), 12, 3e4, 0.04),
+        ("ellipse 8 x 4", EllipseBody(size=(8, 4)), 28, 6e4, 0.03),
+        ("ellipse 9 x 3", EllipseBody(size=(9, 3)), 30, 6e4, 0.03),
+    ):
+        d = body.dimensions[0]
+        case = case_of(body, side, "at+a", length, BodyDrift(), shear_rate=rate)
+        files, note = ran(page, f"shear-{name}".replace(" ", ""), case)
+        c = found(files["body-drift"], "angular velocity about z")
+        aspect = body.size[0] / body.size[1] if isinstance(body, EllipseBody) else 1.0
+        half = body.size[0] / 2 if isinstance(body, EllipseBody) else 2.0
+        known = rate / (aspect + 1 / aspect)
+        note = f"without noise {known:.4f}; {note}"
+        if isinstance(body, EllipseBody):
+            known = noisy_turning(*body.size, rate)
+        reynolds = rate * half**2 / VISCOSITIES["at+a", d][0]
+        one = Comparison(f"{name}: angular velocity", abs(c.measured), c.error, known, "1/tau",
+                         f"rate {rate:g}, Re {reynolds:.2f}; {note}")  # fmt: skip
+        rows.append(one)
+        met(page, one.what, one, 5)
+        if aspect > 1:
+            period = 2 * math.pi / one.measured
+            rows.append(Comparison(f"{name}: period", period, period * one.error / one.measured,
+                                   2 * math.pi / known, "tau",
+                                   f"Jeffery {theory.jeffery_period(aspect, rate):.0f}")
+                        )  # fmt: skip
+    page.table(rows)
+
+
+def einstein(page: Page) -> None:
+    """Viscosity of a suspension of disks."""
+    page.heading("Einstein viscosity")
+    rate, side, radius = 0.04, 30, 2.0
+    page.text(
+        f"Viscosity by `stress` of 2D AT+a with disks of R = 2 in a square of side {side}, over "
+        f"that of the same box without bodies, at the rate {rate:g}. Theory is 1 + 2 phi (1 + 2 "
+        "b/R)/(1 + 4 b/R), with the slip length that rotation gives, the first order in phi alone."
+    )
+    rows, empty = [], (1.0, 0.0)
+    for number in (0, 3, 6):
+        length = 4e4
+        if number:
+            body = DiskBody(radius=radius, number=number)
+            case = case_of(body, side, "at+a", length, Stress(), shear_rate=rate)
+        else:
+            case = Case(
+                run=Run(steps=steps(length), warmup=WARMUP[2], seed=11), observe=[Stress()],
+                box=Box([side, side], shear_rate=rate), fluid=fluid("at+a"),
+            )  # fmt: skip
+        files, note = ran(page, f"einstein-{number}", case)
+        c = found(files["stress"], "viscosity")
+        if not number:
+            empty = c.measured, c.error
+            rows.append(renamed(c, "without bodies: viscosity", note))
+            continue
+        phi = number * math.pi * radius**2 / side**2
+        ratio = c.measured / empty[0]
+        error = ratio * math.hypot(c.error / c.measured, empty[1] / empty[0])
+        known = theory.suspension_viscosity(phi, 2, slip=SLIP["at+a", 2] / radius)
+        rows.append(Comparison(f"phi = {phi:.3f}: eta/eta0", ratio, error, known, "", note))
+        rows.append(Comparison(f"phi = {phi:.3f}: (eta/eta0 - 1)/phi", (ratio - 1) / phi,
+                               error / phi, (known - 1) / phi, "", note))  # fmt: skip
+        met(page, rows[-1].what, rows[-1], 10)
+    page.table(rows)
+
+
+def noisy_turning(length: float, wide: float, rate: float) -> float:
+    """Mean angular velocity of an ellipse in a shear flow, with noise (Fokker and Planck)."""
+    spread = 1 / (2 * math.pi * viscosity("at+a", 2) * (length**2 + wide**2) / 4)
+    stretch = (length**2 - wide**2) / (length**2 + wide**2)
+    turning = rate / 2 * np.array([stretch / 2, 1, stretch / 2])  # modes -2, 0, 2 of d phi/dt
+    modes = np.arange(-40, 41)  # of exp(2 i n phi)
+    matrix = np.diag(-4.0 * spread * modes**2).astype(complex)
+    for shift, part in zip((-1, 0, 1), turning, strict=True):
+        matrix -= np.diag(2j * modes[max(shift, 0) : len(modes) + min(shift, 0)] * part, -shift)
+    middle = len(modes) // 2
+    matrix[middle] = 0
+    matrix[middle, middle] = 1
+    wanted = np.zeros(len(modes), complex)
+    wanted[middle] = 1
+    p = np.linalg.solve(matrix, wanted)
+    return float((turning @ p[middle - 1 : middle + 2]).real)
+
+
+# ---------------------------------------------------------------- walls and shapes
+
+
+def slit(page: Page) -> None:
+    """A sphere drawn along the middle of a slit."""
+    page.heading("Between plates")
+    b = SLIP["at+a", 3]
+    page.text(
+        "A sphere drawn along the middle of a slit, kept there (z fixed), AT+a; the plates take "
+        "the force. Theory is Faxen's mobility with the periodic part, without slip. Slip of the "
+        f"sphere, b = {b:g}, makes it faster by b/(R + 2 b) of Stokes' mobility where the plates "
+        "are far away; that of the plates widens the slit by about b. The row below has both."
+    )
+    rows = []
+    for radius, wide, side in ((2.0, 12, 16), (3.0, 12, 16)):
+        body = SphereBody(
+            radius=radius, force=(20.0, 0.0, 0.0), fixed=("z",),
+            start=BodyStart("given", positions=[(side / 2, side / 2, wide / 2)]),
+        )  # fmt: skip
+        case = case_of(body, side, "at+a", 1.4e4, BodyDrift(), size=[side, side, wide],
+                       walls=[Plates(axis="z")])  # fmt: skip
+        files, note = ran(page, f"slit-{radius:g}", case)
+        c = found(files["body-drift"], "mobility along x")
+        unit = 6 * math.pi * viscosity("at+a", 3) * radius
+        known = theory.slit_mobility(radius, wide / 2, side**2)
+        slipping = theory.slit_mobility(radius, wide / 2 + b, side**2) + b / (radius + 2 * b)
+        what = f"R/h = {2 * radius / wide:.2f}: mobility over that of Stokes"
+        rows.append(Comparison(what, c.measured * unit, c.error * unit, known, "", note))
+        rows.append(renamed(rows[-1], f"{what}, theory with slip", note, slipping))
+        met(page, rows[-1].what, rows[-1], 5)
+    page.table(rows)
+
+
+def long_bodies(page: Page) -> None:
+    """Friction of spheroids and a capsule."""
+    page.heading("Spheroids and a capsule")
+    slip = SLIP["at+a", 3]
+    page.text(
+        "Orientation fixed, drawn by a force along and across the axis at once with "
+        "counter-force, AT+a. Theory of spheroids is the mobility in a wide fluid, with the "
+        "images of the box (the Fourier sum of their force) and the first order of the slip "
+        f"length {slip:g}. That of the capsule is the same with Hasimoto's first term "
+        "2.8373/(6 pi eta L) alone and without slip, which would add some per cent. Turning end "
+        "over end is about a hinge; neither images nor slip are in its theory."
+    )
+    eta, rows = viscosity("at+a", 3), []
+    bodies = (
+        ("spheroid 8 x 4", SpheroidBody, {"half_length": 4.0, "radius": 2.0}, 18),
+        ("spheroid 9 x 3", SpheroidBody, {"half_length": 4.5, "radius": 1.5}, 18),
+        ("capsule 10 x 2", CapsuleBody, {"length": 10.0, "radius": 1.0}, 20),
+    )
+    for name, kind, keys, side in bodies:
+        first = 2.8373 / (6 * math.pi * eta * side)
+        if kind is SpheroidBody:
+            axes = [keys["half_length"], keys["radius"], keys["radius"]]
+            friction = theory.ellipsoid_friction(axes, eta)
+            turning = friction.rotation[1]
+            ways = [
+                1 / friction.translation[k] + by_images(axes, k, side, eta)
+                + by_slip(axes, k, slip, eta)
+                for k in (0, 1)
+            ]  # fmt: skip
+        else:
+            along, across, turning = theory.capsule_friction(10.0, 2.0, eta)
+            ways = [1 / along - first, 1 / across - first]
+        start = BodyStart("given", positions=[(side / 2,) * 3])
+        drawn = kind(
+            **keys, start=start, counter_force=True, force=(25.0, 25.0, 25.0),
+            fixed=("orientation",),
+        )  # fmt: skip
+        files, note = ran(page, f"long-{name}-drawn".replace(" ", ""),
+                          case_of(drawn, side, "at+a", 4e3, BodyDrift()))  # fmt: skip
+        x, y, z = (found(files["body-drift"], f"mobility along {axis}") for axis in "xyz")
+        rows.append(renamed(x, f"{name}, along: mobility", note, float(ways[0])))
+        rows.append(Comparison(
+            f"{name}, across: mobility", 0.5 * (y.measured + z.measured),
+            0.5 * math.hypot(y.error, z.error), float(ways[1]), x.unit, note,
+        ))  # fmt: skip
+        turned = kind(**keys, start=start, torque=(0.0, 0.0, 120.0), hinge=(0.0, 0.0, 1.0))
+        files, note = ran(page, f"long-{name}-turned".replace(" ", ""),
+                          case_of(turned, side, "at+a", 4e3, BodyDrift()))  # fmt: skip
+        c = found(files["body-drift"], "rotational mobility about z")
+        rows.append(renamed(c, f"{name}, end over end: mobility", note, float(1 / turning)))
+        for c in rows[-3:]:
+            met(page, c.what, c, 5)
+    page.table(rows)
+
+
+def by_images(axes: list[float], along: int, side: float, eta: float) -> float:
+    """What its images in a cube add to the mobility of an ellipsoid along one of its axes.
+
+    The sum of (1 - n_i^2)/(eta L^3 k^2) (sin q/q)^2 over all waves k but 0, less its integral, with
+    q^2 the sum of (k_j a_j)^2. Both with a factor exp(-w k^2), whose first order is taken off.
+    """
+    square, most, cut = np.square(axes), 20, 12.0
+    w = cut / (most * 2 * math.pi / side) ** 2
+    n = np.arange(-most, most + 1)
+    k = 2 * math.pi / side * np.stack(np.meshgrid(n, n, n), -1).reshape(-1, 3)
+    k = k[k.any(axis=1)]
+    k2 = (k**2).sum(axis=1)
+    q = np.sqrt(k**2 @ square)
+    waves = ((1 - k[:, along] ** 2 / k2) / k2 * np.sinc(q / math.pi) ** 2 * np.exp(-w * k2)).sum()
+    directions, weight = on_sphere(40)
+    reach = np.sqrt(np.tensordot(square, directions**2, 1))
+    size = np.linspace(1e-6, 8.5 / math.sqrt(w), 3000)
+    inner = np.trapezoid(
+        np.sinc(reach[..., None] * size / math.pi) ** 2 * np.exp(-w * size**2), size, axis=-1
+    )
+    whole = ((1 - directions[along] ** 2) * inner * weight).sum() / (2 * math.pi) ** 3
+    return float((waves / side**3 - whole - 2 / 3 * w / side**3) / eta)
+
+
+def on_sphere(number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Directions (3, number, number) and their weights, which add up to 4 pi."""
+    cosine, weight = np.polynomial.legendre.leggauss(number)
+    angle = 2 * math.pi * (np.arange(number) + 0.5) / number
+    z, phi = np.meshgrid(cosine, angle, indexing="ij")
+    around = np.sqrt(1 - z**2)
+    directions = np.stack([around * np.cos(phi), around * np.sin(phi), z])
+    return directions, weight[:, None] * np.full(number, 2 * math.pi / number)
+
+
+def by_slip(axes: list[float], along: int, slip: float, eta: float) -> float:
+    """What a slip length adds to the mobility of an ellipsoid, to first order.
+
+    It is b/eta times the integral of the square of the tangential force on unit surface, which for
+    a unit force is that of a stick ellipsoid (Brenner 1964): w/(4 pi a b c), the same direction.
+    """
+    s, weight = on_sphere(64)
+    w = 1 / np.sqrt(sum((s[j] / axes[j]) ** 2 for j in range(3)))
+    tangential = 1 - (w * s[along] / axes[along]) ** 2
+    total = (weight * w * tangential).sum()
+    return float(slip * total / (eta * (4 * math.pi) ** 2 * math.prod(axes)))
+
+
+# ---------------------------------------------------------------- flow of swimmers
+
+
+def flow(page: Page) -> None:
+    """Mean flow about a puller in 2D, in the frame of its own axis."""
+    page.heading("Flow about a squirmer")
+    page.text(
+        "2D, R = 3, B1 = 0.1, B2 = 0.2 (a puller), AT+a, box of side 40; velocities in the frame "
+        "of the box, at places about the centre, turned into the axes of the body. Theory is that "
+        "of a wide fluid: a box of 13 radii turns some of it back, most where it decays as 1/r."
+    )
+    radius, half, B1, B2 = 3.0, 12, 0.1, 0.2
+    body = DiskBody(radius=radius, swim=Squirming(B1=B1, B2=B2))
+    case = case_of(body, 40, "at+a", 4e4)
+
+    def look(engine: Any) -> np.ndarray:
+        bodies = engine.bodies
+        x, v = engine.positions(), engine.velocities()
+        e = bodies.headings[0]
+        turn = np.array([[e[0], e[1]], [-e[1], e[0]]])
+        away = x - bodies.places(unwrapped=False)[0]
+        away = (away - 40 * np.round(away / 40)) @ turn.T
+        v = v @ turn.T
+        edges = np.arange(-half, half + 1)
+        weights = np.ones(len(x)), v[:, 0], v[:, 1]
+        return np.array([np.histogram2d(*away.T, bins=(edges, edges), weights=w)[0]
+                         for w in weights])  # fmt: skip
+
+    kept = recorded(page, "flow", case, 20, look)
+    parts = np.array([b.sum(axis=0) for b in np.array_split(kept, 16)])
+    whole = parts.sum(axis=0)
+    mean = whole[1:] / np.maximum(whole[0], 1)
+    each = parts[:, 1:] / np.maximum(parts[:, :1], 1)
+    error = each.std(axis=0, ddof=1) / math.sqrt(len(parts))
+    middle = np.arange(-half, half) + 0.5
+    x, y = np.meshgrid(middle, middle, indexing="ij")
+    places = np.stack([x, y], axis=-1)
+    known = np.moveaxis(theory.squirmer_flow(places, (1.0, 0.0), radius, B1, B2), -1, 0)
+    r = np.hypot(x, y)
+    rows = []
+    for low, high in ((3.8, 5), (5, 7), (7, 9)):
+        ring = (r > low) & (r < high)
+        weight = (known[:, ring] ** 2).sum()
+        size = float((mean[:, ring] * known[:, ring]).sum() / weight)
+        scatter = float(math.sqrt((known[:, ring] ** 2 * error[:, ring] ** 2).sum()) / weight)
+        rows.append(Comparison(f"flow over theory, {low:g} < r < {high:g}", size, scatter, 1.0, "",
+                               f"{case.run.steps} steps"))  # fmt: skip
+    page.table(rows)
+    fig, axes = plt.subplots(1, 2, figsize=(8.4, 4), sharey=True)
+    for ax, field, title in zip(axes, (mean, known), ("measured", "theory"), strict=True):
+        free = r > radius
+        speed = np.where(free, np.hypot(*field), np.nan)
+        image = ax.imshow(speed.T, origin="lower", extent=[-half, half] * 2, cmap="viridis",
+                          vmin=0, vmax=0.25)  # fmt: skip
+        u, w = (np.where(free, f, 0.0) for f in field)
+        ax.streamplot(middle, middle, u.T, w.T, color="white", density=0.9, linewidth=0.7)
+        ax.add_patch(plt.Circle((0, 0), radius, color=GREY))
+        ax.set(title=title, xlabel="along the axis  [$a$]", xlim=(-half, half), ylim=(-half, half))
+    axes[0].set_ylabel("across  [$a$]")
+    fig.colorbar(image, ax=axes[1], label="speed  [$a/\\tau$]")
+    page.figure(fig, "Mean flow about a puller in 2D, turned into the axes of its body; right: "
+                "theory of a wide fluid. Colour: speed.", "_flow")  # fmt: skip
+
+
+PARTS: dict[str, Callable[[Page], None]] = {
+    "viscosities": viscosities, "rotation": rotation, "swimming": swimming, "drag": drag,
+    "slip_lengths": slip_lengths,
+    "shear": shear, "einstein": einstein, "slit": slit, "long_bodies": long_bodies, "flow": flow,
+}  # fmt: skip
+
+
+def make(parts: Sequence[str] = tuple(PARTS)) -> int:
+    """Write the page, of all parts or those named."""
+    page = Page("bodies_in_flow", "Bodies that move in a flow")
+    page.text(PREFACE)
+    page.text("How warm they are at rest, and how they diffuse: [bodies](bodies.md).")
+    for name in parts:
+        PARTS[name](page)
+    page.heading("Not measured here")
+    left = [[name, "not run for this page"] for name in PARTS if name not in parts]
+    page.grid(["law", "reason"], [list(row) for row in LEFT_OUT] + left)
+    return page.write()
+
+
+if __name__ == "__main__":
+    main(lambda: make([name for name in PARTS if name in sys.argv[1:]] or tuple(PARTS)))
