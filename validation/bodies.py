@@ -58,6 +58,8 @@ from mesokit import (
 
 DUMBBELL = (Sphere(centre=(-1.6, 0, 0), radius=1.7), Sphere(centre=(1.4, 0, 0), radius=1.3))
 L_SHAPE = (Rectangle(centre=(0, 0), size=(6, 2)), Rectangle(centre=(2, 2.5), size=(2, 3)))
+DISKS, DISK, SQUARE = 29, 1.5, 32  # of the structure at rest: number, radius, side of the box
+CHAINS, SWEEPS = 200, 2000  # of its Monte Carlo
 LEFT_OUT = (
     ("D(L) over three boxes; long-time tails", "the noise is larger than the effect in these runs"),
     ("published virtual particles alone", "both rules and the hits alone are shown"),
@@ -373,6 +375,91 @@ def mean_of(values: np.ndarray) -> tuple[float, float]:
     return float(np.mean(means)), float(np.std(means, ddof=1) / math.sqrt(10))
 
 
+# ---------------------------------------------------------------- structure
+
+
+def structure(page: Page) -> None:
+    """Pair distribution of disks in the fluid beside that of the same disks without it."""
+    page.heading("Structure at rest")
+    fraction = DISKS * math.pi * DISK**2 / SQUARE**2
+    page.text(
+        f"{DISKS} disks of R = {DISK} that repel each other by the gap potential, in a square of "
+        f"side {SQUARE}, {100 * fraction:.0f} % of the area, AT+a. The fluid is an ideal gas of "
+        "points and must not make a force between them. So g(r) is that of the same disks without "
+        f"a fluid, here by Monte Carlo: {CHAINS} chains of {SWEEPS} sweeps. A disk diffuses over "
+        "its radius in about 100 time units."
+    )
+    body = DiskBody(radius=DISK, number=DISKS)
+    case = case_of(body, SQUARE, "at+a", 5e4)
+    places = recorded(page, "structure", case, 50, lambda engine: engine.bodies.places())
+    edges = np.array([3.35, 3.5, 3.75, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0, 15.0])
+    blocks_of = np.array([pair_distribution(b, edges) for b in np.array_split(places, 20)])
+    value, error = blocks_of.mean(axis=0), blocks_of.std(axis=0, ddof=1) / math.sqrt(20)
+    asked = f"{edges[0]} {DISKS} {DISK} {SQUARE} {CHAINS} {SWEEPS // (20 if SHORT else 1)}"
+    chains = kept(page, "monte-carlo", asked, lambda: np.array(
+        [pair_distribution(chain, edges) for chain in monte_carlo(SWEEPS // (20 if SHORT else 1))]
+    ))  # fmt: skip
+    known, unsure = chains.mean(axis=0), chains.std(axis=0, ddof=1) / math.sqrt(len(chains))
+    rows = [
+        Comparison(f"g(r), {a:g} < r < {b:g}", v, math.hypot(e, u), k, "",
+                   f"error of the Monte Carlo {u:.1g}")
+        for a, b, v, e, k, u in zip(edges[:-1], edges[1:], value, error, known, unsure, strict=True)
+    ]  # fmt: skip
+    page.table(rows)
+    sure = [c for c in rows if c.error > 0]
+    square = float(np.mean([c.deviation**2 for c in sure]))
+    page.check(
+        f"g(r) at rest, {case.run.steps} steps: mean square deviation of {len(sure)} bins "
+        f"{square:.2f} standard errors^2 (below 2.5)",
+        square < 2.5,
+    )
+    fig, axis = plt.subplots(figsize=(5.5, 3.6))
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    axis.stairs(known, edges, color=GREY, label="Monte Carlo without a fluid")
+    axis.errorbar(middle, value, error, fmt="o", color=BLUE, mfc="white", ms=4,
+                  label="bodies in the fluid")  # fmt: skip
+    axis.set(xlabel="$r$  [$a$]", ylabel="$g(r)$")
+    axis.legend()
+    page.figure(fig, "Pair distribution of disks at rest, in bins. Error bars: one standard error.",
+                "_structure")  # fmt: skip
+
+
+def pair_distribution(places: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """g(r) of places (times, number, 2) in the square, in bins of r."""
+    first, second = np.triu_indices(places.shape[1], 1)
+    counts = np.zeros(len(edges) - 1)
+    for part in np.array_split(places, max(len(places) // 500, 1)):
+        away = part[:, first] - part[:, second]
+        away -= SQUARE * np.rint(away / SQUARE)
+        counts += np.histogram(np.hypot(away[..., 0], away[..., 1]), edges)[0]
+    rings = math.pi * np.diff(edges**2) / SQUARE**2
+    return counts / (len(places) * len(first) * rings)
+
+
+def monte_carlo(sweeps: int) -> np.ndarray:
+    """Places of the same disks without a fluid (chains, times, number, 2), by Metropolis."""
+    random = np.random.default_rng(3)
+    lattice = np.stack(np.meshgrid(*[np.arange(6) + 0.5] * 2), -1).reshape(-1, 2)[:DISKS]
+    x = np.repeat(lattice[None] * SQUARE / 6, CHAINS, axis=0)
+    seen, every_chain = [], np.arange(CHAINS)
+
+    def energy(places: np.ndarray, i: int) -> np.ndarray:
+        away = np.delete(x, i, axis=1) - places[:, None]
+        away -= SQUARE * np.rint(away / SQUARE)
+        gap = np.hypot(away[..., 0], away[..., 1]) - 2 * DISK
+        return np.where(gap > 0, gap_energy(gap), 1e9).sum(axis=1)
+
+    for sweep in range(sweeps):
+        for i in range(DISKS):
+            new = x[:, i] + random.uniform(-1.5, 1.5, (CHAINS, 2))
+            rise = energy(new, i) - energy(x[:, i], i)
+            taken = every_chain[random.random(CHAINS) < np.exp(-np.clip(rise, 0, 700))]
+            x[taken, i] = new[taken]
+        if sweep >= sweeps // 10 and sweep % 5 == 0:
+            seen.append(x.copy())
+    return np.swapaxes(np.array(seen), 0, 1)
+
+
 # ---------------------------------------------------------------- published rules
 
 
@@ -428,7 +515,7 @@ def run_published(which: str) -> None:
 
 PARTS: dict[str, Callable[[Page], None]] = {
     "conservation": conservation, "equipartition": equipartition, "published": published,
-    "memory": memory, "diffusion": diffusion, "barometric": barometric,
+    "memory": memory, "diffusion": diffusion, "barometric": barometric, "structure": structure,
 }  # fmt: skip
 
 
