@@ -213,15 +213,18 @@ def slip_lengths(page: Page) -> None:
         ("rotation", PURPLE, "o", -0.15), ("swimming", BLUE, "s", 0.0), ("drag", RED, "^", 0.15),
     ):  # fmt: skip
         rows = [row for row in SLIPS if row[0] == by]
+        if not rows:
+            continue
         axis.errorbar([names.index(row[1]) + shift for row in rows], [row[2] for row in rows],
                       [row[3] for row in rows], fmt=mark, color=colour, mfc="white", ms=5,
                       label=f"by {by}")  # fmt: skip
     plates = [next(row[4] for row in SLIPS if row[1] == name) for name in names]
-    axis.plot(range(len(names)), plates, "_", ms=28, color=GREY, label="plates in SRD")
+    left = np.arange(len(names)) - 0.3
+    axis.hlines(plates, left, left + 0.6, color=GREY, lw=1.2, label="plates in SRD")
     axis.axhline(0, color=GREY, lw=0.5)
     axis.set(xticks=range(len(names)), xticklabels=names, ylabel="slip length", xlim=(-0.5, 4.5))
     axis.legend(fontsize=7)
-    page.figure(fig, "Slip lengths at R = 3 by three ways. Error bars: one standard error; the "
+    page.figure(fig, "Slip lengths at R = 3. Error bars: one standard error; the "
                 "viscosity is in those of rotation alone.", "_slip")  # fmt: skip
 
 
