@@ -7,13 +7,20 @@ import pytest
 
 import mesokit
 from mesokit import (
+    SRD,
+    ATPlusA,
     BodyCorrelation,
     BodyDisplacement,
     BodyDrift,
     BodyMotion,
     BodyTracks,
+    Box,
+    Case,
     CaseError,
+    Fluid,
+    Run,
     RunError,
+    SRDPlusA,
 )
 from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.protocol import BodyStart
@@ -209,6 +216,32 @@ def test_equipartition_of_bodies_that_are_not_free():
     pushed = DiskBody(radius=1.5, force=(1.0, 0.0))
     [one] = every_kind(moving_disks(bodies=(pushed,)), "this")
     assert not one.thermal and np.isnan(one.velocity_square())
+
+
+@pytest.mark.parametrize(
+    ("collision", "virtual", "slip", "source"),
+    [
+        (ATPlusA(), "fill", 0.159, "balls that turn"),
+        (SRDPlusA(angle=90), "fill", 0.159, "balls that turn"),
+        (ATPlusA(), "none", 1.32, "plates in SRD"),
+        (SRD(angle=130), "fill", 0.22, "plates in SRD"),
+    ],
+)
+def test_the_slip_length_is_that_of_such_rules(collision, virtual, slip, source):
+    """At a mean free path of 0.1; with another timestep all follow the same line."""
+    of = []
+    for step in (0.1, 0.3):
+        case = Case(
+            run=Run(40, seed=3),
+            box=Box([14, 14]),
+            fluid=Fluid(density=10, timestep=step, collision=collision),
+            bodies=(DiskBody(radius=3, virtual=virtual),),
+        )
+        of.append(followed(case, "this").slip)
+    assert of[0][0] == pytest.approx(slip) and source in of[0][1]
+    line = np.log(3) / np.log(5)
+    per_path = {"fill": 0.117 / 0.220, "none": 0.070 / 1.320}[virtual]
+    assert of[1][0] == pytest.approx(slip * per_path**line)
 
 
 def test_mobilities_are_velocities_over_forces():

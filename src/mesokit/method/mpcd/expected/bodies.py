@@ -181,18 +181,23 @@ class Followed(NamedTuple):
 
     @property
     def slip(self) -> tuple[float, str]:
-        """The slip length of its surface, from channels with plates of the same rule, and a note.
+        """The slip length of its surface, and a note on where it is from.
 
-        Between the mean free paths of those it is interpolated (docs/validation/wall_slip.md).
+        Between mean free paths it is interpolated (docs/validation/wall_slip.md). That of rules
+        that conserve angular momentum follows the same line.
         """
-        known = SLIP_LENGTHS[self.case.box.dimension, self.kind.virtual]
+        place = self.case.box.dimension, self.kind.virtual
         path = np.log(setting.mean_free_path(self.case))
-        slip = float(np.exp(np.interp(path, np.log(PATHS), np.log(known))))
-        return slip, f"with a slip length of {slip:.2g} a, as of plates in SRD"
+        slip = float(np.exp(np.interp(path, np.log(PATHS), np.log(SLIP_LENGTHS[place]))))
+        own = SLIP_OF_TURNING.get(place)
+        if own is None or "angular momentum" not in self.case.fluid.collision.conserves:
+            return slip, f"with a slip length of {slip:.2g} a, as of plates in SRD"
+        slip *= own / SLIP_LENGTHS[place][PATHS.index(0.1)]
+        return slip, f"with a slip length of {slip:.2g} a, as of balls that turn"
 
 
-# Mean free paths, and slip lengths of plates that were measured there. In 2D those of 0.1 alone,
-# the others in proportion to 3D.
+# Mean free paths, and slip lengths of plates in SRD that were measured there. In 2D those of 0.1
+# alone, the others in proportion to 3D.
 PATHS = (0.02, 0.1, 0.5)
 SLIP_LENGTHS = {
     (3, "fill"): (0.242, 0.151, 0.080),
@@ -200,6 +205,9 @@ SLIP_LENGTHS = {
     (2, "fill"): (0.353, 0.220, 0.117),
     (2, "none"): (8.25, 1.320, 0.070),
 }
+# With rules that conserve angular momentum, of spheres and disks that turn, at a mean free path of
+# 0.1: the mean of two rules (docs/validation/bodies_in_flow.md).
+SLIP_OF_TURNING = {(3, "fill"): 0.083, (2, "fill"): 0.159}
 
 
 def followed(case: Case, quantity: str, kind: int | str = 1) -> Followed:
