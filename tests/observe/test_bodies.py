@@ -24,6 +24,7 @@ from mesokit import (
 )
 from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.protocol import BodyStart
+from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.bodies import every_kind, followed
 from mesokit.report.figures import plot
 from mesokit.run.simulation import Simulation
@@ -169,6 +170,7 @@ def test_correlations_of_steady_motion():
     np.testing.assert_allclose(result.value, (1 + 4 + 2) / 3 / 2)  # a component
     t = result.x["time"]
     assert result["diffusion"].measured == pytest.approx(7 / 6 * t[-1])
+    assert result["diffusion"].note.startswith("approximate: a lower bound, as the slowest flow")
     share = 1 - DISKS_MASS / ALL_MASS
     assert result["value at lag 0"].expected == pytest.approx(share / DISKS_MASS)
     result = seen(BodyCorrelation(of="angular velocity", max_lag=20))
@@ -176,6 +178,15 @@ def test_correlations_of_steady_motion():
     assert result["value at lag 0"].expected == pytest.approx(2 / (DISKS_MASS * 1.5**2))
     result = seen(BodyCorrelation(of="orientation", max_lag=20, **PLANKS))
     np.testing.assert_allclose(result.value, np.cos(2 * t), atol=1e-12)
+
+
+def test_an_integral_up_to_a_long_lag_is_a_diffusion_coefficient():
+    """The slowest flow in this box lasts L^2/(4 pi^2 nu)."""
+    case = moving_disks(observe=[BodyCorrelation()])
+    slowest = 14**2 / (4 * np.pi**2 * setting.solvent(case).viscosity)
+    of = BodyCorrelation().accumulator(case)
+    assert of.cut_short(4.1 * slowest) == ""
+    assert of.cut_short(3.9 * slowest).endswith(f"max_lag = {np.ceil(40 * slowest):.0f} is enough")
 
 
 DISKS_MASS = 5 * np.pi * 1.5**2

@@ -8,18 +8,21 @@ import numpy as np
 
 from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, tag
+from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.bodies import KIND_OF_BODY
 from mesokit.method.mpcd.observe.shared.bodies_in_time import BodiesInTime, free_axes
 from mesokit.observe.shared.fitted import fitted_number
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.observable import Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result, joined
 
 LABELS = {
     "velocity": "velocity autocorrelation",
     "angular velocity": "angular-velocity autocorrelation",
     "orientation": "orientation correlation",
 }
+MEMORIES = 4.0  # of the slowest flow, after which its share of an integral is left out
 UNITS = {"velocity": "a^2/tau^2", "angular velocity": "1/tau^2", "orientation": ""}
 
 
@@ -103,7 +106,32 @@ class BodyCorrelationAccumulator(BodiesInTime):
         expected, note = self.of.rotational_diffusion() if turns else self.of.diffusion()
         what = f"{'rotational ' * turns}diffusion coefficient up to {time[-1]:g} tau"
         unit = "1/tau" if turns else "a^2/tau"
+        note = joined("" if turns else self.cut_short(float(time[-1])), note)
         yield Comparison(what, *kept.total(trapezoid), expected, unit, note)
+
+    def cut_short(self, last: float) -> str:
+        """A note where the fluid still carries bodies on at the last lag; "" where it hardly does.
+
+        The slowest shear mode of a box of length L decays in L^2/(4 pi^2 nu).
+        """
+        coefficients, case = setting.solvent(self.case), self.case
+        closed = closed_axes(case.walls)
+        lengths = [
+            length
+            for axis, length in zip(case.box.axes, case.box.size, strict=True)
+            if axis not in closed
+        ]
+        if coefficients is None or not lengths:
+            return ""
+        longest = max(lengths)
+        slowest = longest**2 / (4 * math.pi**2 * coefficients.viscosity)
+        if last >= MEMORIES * slowest:
+            return ""
+        enough = math.ceil(MEMORIES * slowest / case.fluid.timestep)
+        return (
+            f"approximate: a lower bound, as the slowest flow in the box lasts {slowest:.2g} tau; "
+            f"max_lag = {enough} is enough"
+        )
 
     def decay(self, time: Array, kept: Estimate) -> Iterator[Comparison]:
         """The rotational diffusion coefficient, from the lag at which 1/e is left, or nearly."""
