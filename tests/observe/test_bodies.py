@@ -23,7 +23,7 @@ from mesokit import (
     SRDPlusA,
 )
 from mesokit.method.mpcd.body.disk import DiskBody
-from mesokit.method.mpcd.body.protocol import BodyStart
+from mesokit.method.mpcd.body.protocol import BodyStart, Squirming
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.bodies import every_kind, followed
 from mesokit.report.figures import plot
@@ -253,6 +253,22 @@ def test_the_slip_length_is_that_of_such_rules(collision, virtual, slip, source)
     line = np.log(3) / np.log(5)
     per_path = {"fill": 0.117 / 0.220, "none": 0.070 / 1.320}[virtual]
     assert of[1][0] == pytest.approx(slip * per_path**line)
+
+
+def test_motion_that_is_not_thermal_alone_is_named():
+    pushed = DiskBody(radius=1.5, number=4, force=(1.0, 0.0), fixed=("orientation",))
+    held = DiskBody(radius=1.5, fixed=("x", "y"), swim=Squirming(B2=0.1))
+    case = moving_disks(bodies=(pushed, held), observe=[BodyMotion()])
+    result = seen(BodyMotion(), case, np.ones((5, 2)), np.ones(5))
+    found = {c.what: c.note for c in result.comparisons[:3]}
+    assert found == dict.fromkeys(
+        [
+            "mean square velocity of disk-1", "mean square angular velocity of disk-2",
+            "temperature of the fluid",
+        ],
+        "no equipartition: swimming and drift included",
+    )  # fmt: skip
+    assert np.isnan(result.value).tolist() == [[False, True], [True, False]]
 
 
 def test_mobilities_are_velocities_over_forces():

@@ -271,6 +271,20 @@ def stirred(case: Case) -> bool:
     )
 
 
+def motion_besides(case: Case) -> str:
+    """What moves beside thermal motion: "flow", "swimming", "drift"; "" at rest.
+
+    Forces and torques on bodies are drift.
+    """
+    pushed = any(np.any(one.force or 0.0) or np.any(one.torque or 0.0) for one in case.bodies)
+    words = {
+        "flow": flows_by_itself(case),
+        "swimming": any(one.swim is not None for one in case.bodies),
+        "drift": pushed,
+    }
+    return " and ".join(word for word, there in words.items() if there)
+
+
 MAGNETIC = "no theory of motion in a magnetic field"
 
 

@@ -26,7 +26,8 @@ class BodyMotion(Observable):
     They are <V^2> M/(d kT), and <Omega_i^2> I_i/kT about each axis of the body. Where the momentum
     of all is zero, the first is 1 - M/M_all. Beside them stand the kinetic temperature of the
     fluid, and in a step how many particles hit a body twice, had to be put back
-    out of one, or still hit in the last round of hits.
+    out of one, or still hit in the last round of hits. With flow, drift or swimming these are
+    included, and there is no theory. What is fixed or hinged is left out.
     """
 
     quantity: Literal["body-motion"] = tag("body-motion")
@@ -75,8 +76,12 @@ class BodyMotionAccumulator(BlockAccumulator):
         value, error = self.blocks.mean(), self.blocks.error()
         of_fluid = value[: 1 + len(COUNTED)], error[: 1 + len(COUNTED)]
         value, error = (a[1 + len(COUNTED) :].reshape(len(self.kinds), -1) for a in (value, error))
-        expected = np.stack([self._expected(one) for one in self.kinds])
-        known = np.isfinite(expected) | ~np.array([one.thermal for one in self.kinds])[:, None]
+        expected, width = np.stack([self._expected(one) for one in self.kinds]), value.shape[1]
+        driven = [
+            [not one.thermal and bool(one.turning if i else one.moving) for i in range(width)]
+            for one in self.kinds
+        ]
+        known = np.isfinite(expected) | np.array(driven)
         about = [""] if self.dimension == 2 else [f" about {axis}" for axis in AXES]
         names = ["velocity", *(f"angular velocity{axis}" for axis in about)]
         return self.report(
@@ -99,19 +104,27 @@ class BodyMotionAccumulator(BlockAccumulator):
     def of_kinds(
         self, names: list[str], value: Array, error: Array, expected: Array
     ) -> Iterator[Comparison]:
+        why = self.driven()
         for k, one in enumerate(self.kinds):
             for i, name in enumerate(names):
-                if np.isfinite(expected[k, i]) or not one.thermal:
+                free = one.turning if i else one.moving
+                if np.isfinite(expected[k, i]) or (free and not one.thermal):
                     found, known = float(value[k, i]), float(expected[k, i])
                     scatter = one.with_start(float(error[k, i]), known, self.blocks.series)
                     unit = "kT/I" if i else f"{len(one.moving)} kT/M"
                     what = f"mean square {name} of {one.name}"
-                    yield Comparison(what, found, scatter, known, unit)
+                    yield Comparison(what, found, scatter, known, unit, why)
+
+    def driven(self) -> str:
+        """Why there is no equipartition; "" where there is."""
+        besides = setting.motion_besides(self.case)
+        return f"no equipartition: {besides} included" if besides else ""
 
     def of_fluid(self, mean: Array, spread: Array) -> Iterator[Comparison]:
         at_rest = not setting.driven(self.case)
         kT = float(self.case.fluid.kT) if at_rest else np.nan
         scatter = self.kinds[0].with_start(float(spread[0]), kT, self.blocks.series)
-        yield Comparison("temperature of the fluid", float(mean[0]), scatter, kT, "m a^2/tau^2")
+        what, unit = "temperature of the fluid", "m a^2/tau^2"
+        yield Comparison(what, float(mean[0]), scatter, kT, unit, self.driven())
         for k, name in enumerate(COUNTED, start=1):
             yield Comparison(f"{name} in a step", float(mean[k]), float(spread[k]), np.nan)
