@@ -76,7 +76,9 @@ def _straight(ax: Any, result: Result, t: Any, value: Any) -> None:
     known = [c for c in result.comparisons if c.unit in diffusion and np.isfinite(c.expected)]
     if known and result.extra.get("components"):
         slope = 2 * len(result.extra["components"]) * known[0].expected
-        late = t if result.fit is None else t[t >= 0.1 * result.x["time"][-1]]
+        late = t  # from where diffusion holds, as before it places go less far
+        if result.fit is not None:
+            late = result.x["time"][np.isfinite(result.fit)]
         expected = f"{known[0].expected:.3g} {symbols(known[0].unit)}"
         label = f"{mathematics(f'theory: {known[0].what}')}, {expected}"
         ax.plot(late, slope * late, "-", color="black", label=label, zorder=3)

@@ -22,6 +22,7 @@ from mesokit.seam.result import Result
 SHOWN = 6  # curves
 MANY = 200  # points of a line that is to look smooth
 SPAN = 5.0  # largest over smallest structure factor from which axes are logarithmic
+BESIDE = 0.15  # how far apart curves are beside a name, in distances of names
 GUIDED = 4  # of the last points, through whose middle a guide goes
 
 
@@ -36,20 +37,23 @@ def draw(result: Result, ax: Any) -> None:
     x = np.asarray(result.x[axis])
     named = x.dtype.kind in "US"
     places = np.arange(len(x)) if named else x
-    choices = itertools.product(*(range(len(result.x[name])) for name in others))
-    for i, chosen in enumerate(itertools.islice(choices, SHOWN)):
+    every = itertools.product(*(range(len(result.x[name])) for name in others))
+    choices = list(itertools.islice(every, SHOWN))
+    beside = [(i - (len(choices) - 1) / 2) * BESIDE for i in range(len(choices))]
+    for i, chosen in enumerate(choices):
         at: Any = (slice(None), *chosen)
         picked = [(name, result.x[name][k]) for name, k in zip(others, chosen, strict=True)]
         label = ", ".join(f"{name} {value}".removeprefix("of ") for name, value in picked)
         usual = MEASURED if np.isfinite(result.error[at]).any() else "measured"
-        points(ax, places, result.value[at], result.error[at], i, lw=0.8, label=label or usual)
+        here = places + beside[i] if named else places
+        points(ax, here, result.value[at], result.error[at], i, lw=0.8, label=label or usual)
         if result.expected is not None and np.isfinite(result.expected[at]).any():
             of = [f"theory: {result.theory}", ", ".join(str(value) for _, value in picked)]
             theory = mathematics(", ".join(filter(None, of)))
             look = {"color": "black", "ls": LINES[i]}
-            if named:  # no line joins names
+            if named:  # no line joins names; one entry of the legend for all
                 dash = {"ls": "none", "marker": "_", "ms": 24, "mew": 1.2, "color": look["color"]}
-                ax.plot(places, result.expected[at], label=theory, zorder=1, **dash)
+                ax.plot(here, result.expected[at], label=mathematics(of[0]), zorder=1, **dash)
             elif len(places) == 1:  # of which a line through all points shows nothing
                 ax.axhline(result.expected[at][0], lw=1.2, label=theory, **look)
             else:

@@ -30,7 +30,15 @@ from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
 from mesokit.report.flow.layout import page_width
 from mesokit.report.flow.source import axes_of
-from mesokit.report.particles import body_flow, body_profile, body_tracks, flocks, snapshots, tracks
+from mesokit.report.particles import (
+    body_drift,
+    body_flow,
+    body_profile,
+    body_tracks,
+    flocks,
+    snapshots,
+    tracks,
+)
 from mesokit.report.style import STYLE, WIDTH, fonts, height_of
 from mesokit.seam.in_units import showing
 from mesokit.seam.result import Result
@@ -66,13 +74,17 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "signal": series.draw_signal,
     "tracks": tracks.draw,
     "body tracks": body_tracks.draw,
+    "body drift": body_drift.draw,
     "body flow": body_flow.draw,
     "body profile": body_profile.draw,
     "order": flocks.draw_order,
     "bands": flocks.draw_bands,
 }
 MAPS = ("map", "frames")
-FEW, FLAT = 4, ("tensor", "moduli")  # places of a curve that fill no page; drawings of few numbers
+FEW, FLAT = (
+    4,
+    ("tensor", "moduli", "body drift"),
+)  # places of a curve that fill no page; drawings of few numbers
 LOW = 0.6  # of the usual height, of a figure of few numbers
 
 

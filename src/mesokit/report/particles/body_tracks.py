@@ -22,8 +22,9 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     _paths(panels[0, 0], result)
     names = [str(name) for name in result.x["component"]]
     flat = "angle" in names
+    turned = "turn since the start" if flat else "turn about $z$ since the start"
     for panel, name, label in (
-        (panels[0, 1], "angle" if flat else "angle z", "angle" if flat else "angle about $z$"),
+        (panels[0, 1], "angle" if flat else "angle z", f"{turned}  [rad]"),
         (panels[1, 0], "vx", "velocity $v_x$"),
         (panels[1, 1], "spin" if flat else "spin z", r"angular velocity $\Omega_z$"),
     ):

@@ -25,7 +25,7 @@ class BodyDrift(Observable):
     """
 
     quantity: Literal["body-drift"] = tag("body-drift")
-    value_label = "mean velocity"
+    drawing, value_label = "body drift", "mean velocity"
     kind: int | str = param(1, doc=KIND_OF_BODY)
 
     def check(self, case: Case) -> None:
