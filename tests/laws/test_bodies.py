@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from mesokit import MaxwellBoltzmann, Plates, SRDPlusA
-from mesokit.method.mpcd.body.protocol import BodyStart, CounterForce, Squirming
+from mesokit import BodyMotion, MaxwellBoltzmann, Plates, SRDPlusA
+from mesokit.method.mpcd.body.protocol import BodyStart, BodyTrap, CounterForce, Squirming
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
 from tests.helpers.bodies import ROOM, SHAPES, SIZES, SOME, body
@@ -69,6 +69,21 @@ def test_bodies_have_the_temperature_of_the_fluid(name, virtual):
     assert mean(translation / part).agrees(1.0), mean(translation / part)
     assert mean(rotation).agrees(1.0), mean(rotation)
     assert mean(rotation).error < 0.04  # the test can tell
+
+
+def test_traps_hold_bodies_by_boltzmanns_distribution():
+    """The mean square distance along an axis is kT/k."""
+    fluid = make_fluid((16, 16), bodies=[body("disk", 2, trap=BodyTrap(k=40))], **HELD)
+    seen = BodyMotion().accumulator(fluid.numbers.case)
+    fluid.advance(200)
+    for _ in range(3000):
+        fluid.advance(3)
+        seen.observe(fluid)
+    result = seen.result()
+    for axis in "xy":
+        found = result[f"mean square distance along {axis}"]
+        assert found.expected == 1 / 40 and found.note == ""
+        assert abs(found.deviation) < 4 and found.error < 0.15 * found.expected, str(found)
 
 
 @pytest.mark.parametrize("virtual", ["fill", "none"])

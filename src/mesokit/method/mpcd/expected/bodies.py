@@ -112,6 +112,20 @@ class Followed(NamedTuple):
         mobility, why = self.rotational_mobility()
         return (float(self.case.fluid.kT) * mobility, why) if self.thermal else (math.nan, "")
 
+    @property
+    def held(self) -> bool:
+        """Whether springs hold them to places that do not slide past one another."""
+        there = self.kind.trap is not None and self.kind.trap.k > 0
+        return there and bool(self.moving) and not self.case.box.sheared
+
+    def trapped_square(self) -> tuple[float, str]:
+        """Mean square distance from a trap along one axis, by Boltzmann's distribution."""
+        variance = 1.0 / self.kind.trap.k  # stiffness is in kT/a^2
+        if not self.thermal or 36.0 * variance > min(self.case.box.size) ** 2:
+            return math.nan, ""
+        near = bool(self.case.walls) or sum(kind.number for kind in self.case.bodies) > 1
+        return variance, "approximate: as if no wall or other body were near" if near else ""
+
     def mobility(self) -> tuple[float, str]:
         """Velocity over force in this box."""
         known = self.alone_in_a_cube()

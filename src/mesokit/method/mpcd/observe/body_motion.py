@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import chain
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from mesokit.method.mpcd.columns import holds, total_mass
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.bodies import Followed, every_kind
 from mesokit.seam.observable import BlockAccumulator, Observable, accumulator_of
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.result import Array, Comparison, Result, joined
 from mesokit.statistics import Blocks
 
 COUNTED = ("second hits", "put back", "still hitting")
@@ -27,7 +27,8 @@ class BodyMotion(Observable):
     of all is zero, the first is 1 - M/M_all. Beside them stand the kinetic temperature of the
     fluid, and in a step how many particles hit a body twice, had to be put back
     out of one, or still hit in the last round of hits. With flow, drift or swimming these are
-    included, and there is no theory. What is fixed or hinged is left out.
+    included, and there is no theory. What is fixed or hinged is left out. Of bodies in a trap
+    there is also the mean square distance from it along each axis, beside kT/k.
     """
 
     quantity: Literal["body-motion"] = tag("body-motion")
@@ -42,12 +43,17 @@ class BodyMotion(Observable):
 class BodyMotionAccumulator(BlockAccumulator):
     """Means of the fluid, and over the bodies of each kind."""
 
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "distances")
+
     def prepare(self) -> None:
         case, self.dimension = self.case, self.case.box.dimension
         self.kinds = every_kind(case, self.observable.quantity)
         self.axes = [2] if self.dimension == 2 else [0, 1, 2]
         # temperature of the fluid, counts, and numbers of each kind
         self.blocks = Blocks((1 + len(COUNTED) + len(self.kinds) * (1 + len(self.axes)),))
+        self.held = [one for one in self.kinds if one.held]
+        axes = sum(len(one.moving) for one in self.held)
+        self.distances = Blocks((axes,)) if axes else None
         self.shared_momentum = not (case.walls or holds(case))
 
     def observe(self, fluid: Any) -> None:
@@ -61,6 +67,15 @@ class BodyMotionAccumulator(BlockAccumulator):
             turning = (spins[one.rows] @ one.axes) ** 2 * one.moments / kT
             row += [square.mean(), *turning.mean(axis=0)[self.axes]]
         self.blocks.add(row)
+        if self.distances is not None:
+            self.distances.add(self._square_distances(bodies))
+
+    def _square_distances(self, bodies: Any) -> Array:
+        """Mean square distances of bodies from their traps, along each axis, kind after kind."""
+        away, size = bodies.places(unwrapped=True) - bodies.homes, np.array(self.case.box.size)
+        square = (away - size * np.rint(away / size)) ** 2
+        found = [square[one.rows][:, list(one.moving)].mean(axis=0) for one in self.held]
+        return np.concatenate(found)
 
     def _warmth(self, fluid: Any) -> float:
         """Kinetic temperature of what is no body: at rest, if the momentum of all is shared."""
@@ -87,7 +102,11 @@ class BodyMotionAccumulator(BlockAccumulator):
         return self.report(
             {"kind": [one.name for one in self.kinds], "of": names},
             (np.where(known, value, np.nan), np.where(known, error, np.nan)),
-            chain(self.of_kinds(names, value, error, expected), self.of_fluid(*of_fluid)),
+            chain(
+                self.of_kinds(names, value, error, expected),
+                self.of_traps(),
+                self.of_fluid(*of_fluid),
+            ),
             expected=expected,
             theory="equipartition",
         )
@@ -114,6 +133,18 @@ class BodyMotionAccumulator(BlockAccumulator):
                     unit = "kT/I" if i else f"{len(one.moving)} kT/M"
                     what = f"mean square {name} of {one.name}"
                     yield Comparison(what, found, scatter, known, unit, why)
+
+    def of_traps(self) -> Iterator[Comparison]:
+        """How far bodies are from their traps."""
+        if self.distances is None:
+            return
+        mean, error = self.distances.mean().tolist(), self.distances.error().tolist()
+        places = [(one, axis) for one in self.held for axis in one.moving]
+        for k, (one, axis) in enumerate(places):
+            known, note = one.trapped_square()
+            what = f"mean square distance along {AXES[axis]} from the trap of {one.name}"
+            scatter = one.with_start(error[k], known, self.distances.series)
+            yield Comparison(what, mean[k], scatter, known, "a^2", joined(note, self.driven()))
 
     def driven(self) -> str:
         """Why there is no equipartition; "" where there is."""

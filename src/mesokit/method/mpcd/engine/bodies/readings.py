@@ -100,6 +100,11 @@ class BodyReadings:
         return x
 
     @property
+    def homes(self) -> Floats:
+        """Where the springs of traps are fixed (bodies, d)."""
+        return self._columns(HOME)
+
+    @property
     def images(self) -> NDArray[np.int32]:
         """Boxes that each is away (bodies, d)."""
         return self._columns(BOXES).astype(np.int32)
