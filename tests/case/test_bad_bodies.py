@@ -116,6 +116,13 @@ FILES = {
 }  # fmt: skip
 
 
+def test_a_shape_of_a_wall_is_no_body() -> None:
+    with pytest.raises(CaseError, match=r"bodies\[#1\].*expected DiskBody\(\.\.\.\); Disk is of"):
+        Case(run=Run(1), box=Box([16, 16]), fluid=Fluid(), bodies=[Disk([8, 8], 2)])
+    with pytest.raises(CaseError, match=r"expected Disk\(\.\.\.\); DiskBody is of another section"):
+        Case(run=Run(1), box=Box([16, 16]), fluid=Fluid(), walls=[DiskBody(radius=2)])
+
+
 @pytest.mark.parametrize("text", FILES, ids=[line.partition(":")[0] for line in FILES.values()])
 def test_a_file_with_wrong_bodies_is_refused(text: str, tmp_path: Path, capsys) -> None:
     file = tmp_path / "bad.toml"

@@ -186,6 +186,7 @@ class Family:
         if callable(value) and self.functions:
             raise PydanticCustomError("part", f"expected no function; {self.functions}")
         if not isinstance(value, Mapping):
+            self._refuse_of_the_same_name(value)
             raise PydanticCustomError("dataclass_type", "expected a table")
         if self.tag in value:
             name = value[self.tag]
@@ -215,6 +216,14 @@ class Family:
                 for entry in error.errors()
             ]
             raise ValidationError.from_exception_data(error.title, under_name) from None
+
+    def _refuse_of_the_same_name(self, value: Any) -> None:
+        """Raise an error that names the class meant, where a part of another family is given."""
+        name = getattr(value, self.tag, None) if hasattr(value, "__pydantic_fields__") else None
+        part = self.find(name) if isinstance(name, str) and name in self.parts else None
+        if part is not None:
+            words = f"expected {part.__name__}(...); {type(value).__name__} is of another section"
+            raise PydanticCustomError("part", "{reason}", {"reason": words})
 
 
 FAMILIES: dict[type, Family] = {}
