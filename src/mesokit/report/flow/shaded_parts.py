@@ -89,15 +89,26 @@ def shaded_parts(
         look = Look(light, colour, np.array(turn[:, 0]) * capped)
         for surface in surfaces(part, place, turn):
             front(surface, look, samples)
-    cells = (height, FINER, width, FINER)
-    shares = owner.reshape(cells) >= 0
-    covered = shares.sum(axis=(1, 3))
-    image = np.zeros((height, width, 4))
+    covered = _of_pixels((owner >= 0).astype(np.float32))
+    image = np.zeros((height, width, 4), np.float32)
     image[..., 3] = covered / FINER**2
-    for number, colour in enumerate(colours):
-        own = np.where(owner == number, lit, 0.0).reshape(cells).sum(axis=(1, 3))
-        image[..., :3] += (own / np.maximum(covered, 1))[..., None] * colour
-    return (255.0 * image + 0.5 * (image[..., 3:] > 0)).astype(np.uint8)
+    for number in sorted({one.colour for one in placed}):  # most have few of the colours
+        own = _of_pixels(np.where(owner == number, lit, np.float32(0.0)))
+        own /= np.maximum(covered, 1.0)
+        for k in range(3):
+            image[..., k] += own * np.float32(colours[number][k])
+    image *= 255.0
+    image += np.float32(0.5) * (covered > 0)[..., None]
+    return image.astype(np.uint8)
+
+
+def _of_pixels(samples: Any) -> Any:
+    """Sums over the samples of each pixel, which is quicker than over axes of an array."""
+    corners = [samples[i::FINER, j::FINER] for i in range(FINER) for j in range(FINER)]
+    found = corners[0].copy()
+    for corner in corners[1:]:
+        found += corner
+    return found
 
 
 def surfaces(part: Part, place: Array, turn: Array) -> Iterator[Surface]:
