@@ -18,6 +18,7 @@ from mesokit.method.mpcd.body.rectangle import RectangleBody
 from mesokit.report.flow import KINDS, animate, body_panel, picture
 from mesokit.report.flow.bodies import COLOURS, BodyFrames, outlines
 from mesokit.report.flow.body_distance import distance
+from mesokit.report.flow.film import _smeared
 from mesokit.report.flow.shaded import Balls, shaded
 from mesokit.report.flow.shaded_parts import CAP_SHADE, Placed, shaded_parts
 from mesokit.report.flow.solids import Section
@@ -239,6 +240,21 @@ def test_films_of_a_run(tmp_path):
     files = mesokit.open(tmp_path / "run")
     assert files.animate(tmp_path / "a.gif", "bodies").frames == 5
     assert len(filled(files.flow("bodies").axes[0])) == 1
+
+
+def test_films_say_where_bodies_go_far_while_the_flow_is_averaged():
+    """A disk of radius 2 goes 3 cells from frame to frame, over the edge of the box."""
+    case = make_case(SIZE, bodies=[body("disk", 2)])
+    frames = frames_of(case, *([[(1.0 + 3.0 * k) % 16, 5.0]] for k in range(6)))
+    bodies = BodyFrames(case, frames, ("x", "y"))
+    assert bodies.gone(2.0) == pytest.approx(6 / 4)
+    assert bodies.gone(0.5) == pytest.approx(1.5 / 4)
+    assert _smeared(bodies, frames.time, 1) == ""
+    assert _smeared(bodies, frames.time, 4) == (
+        "flow smeared: bodies go 3 times their size in the time of a mean"
+    )
+    alone = BodyFrames(case, frames_of(case, [[1.0, 5.0]]), ("x", "y"))
+    assert np.isnan(alone.gone(2.0))
 
 
 def test_a_film_shows_bodies_where_they_are_at_each_time(tmp_path, monkeypatch):

@@ -88,6 +88,24 @@ class BodyFrames:
             room=self._room(),
         )
 
+    def gone(self, span: float) -> float:
+        """How far a median body goes in a time at the end of the run, over its size.
+
+        It is nan under shear, and in fewer than two frames. From frame to frame a body must go less
+        than half of the box.
+        """
+        times, box = self.reader.time, self.case.box
+        if len(times) < 2 or box.sheared:
+            return np.nan
+        gap = float(times[-1] - times[-2])
+        lag = min(max(1, round(span / gap)), len(times) - 1)
+        kept = range(len(times) - 1 - lag, len(times))
+        places = np.stack([self.reader[k]["position"][self.rows].astype(float) for k in kept])
+        steps, size = np.diff(places, axis=0), np.array(box.size)
+        away = np.hypot.reduce((steps - size * np.rint(steps / size)).sum(axis=0), axis=-1)
+        sizes = np.array([2.0 * shape.radius for shape in self.shapes])[self.kinds]
+        return float(np.median(away / sizes)) * span / (lag * gap)
+
     def where(self, solid: bool) -> str:
         """Caption: where bodies are cut; in space which are shown, and which end is dark."""
         if self.third is None or self.plane is None:

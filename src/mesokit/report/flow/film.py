@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.io.trajectory_reader import TrajectoryReader
     from mesokit.report.flow.canvas import Canvas
+    from mesokit.report.flow.data import Array
     from mesokit.seam.result import Result
 
 SCALED = 24  # frames that the colours are chosen from
@@ -155,11 +156,23 @@ def animate(
     if moving:
         first = replace(first, bodies=moving.at(source.time[means[0][-1]]))
         notes.append(moving.where(kind == "bodies"))
+        if how == "mean":
+            notes.append(_smeared(moving, source.time, number))
     drawn = Canvas(panels, [first] * len(panels), reaches, shown, section, True, notes)
     drawn.figure.set_dpi(DPI[ending])
     progress.start(len(means), case.particles, "drawing")
     pictures = _pictures(drawn, source, means, progress, width, solutes, moving)
     return _write(path, drawn.figure, pictures, len(means), fps, progress, origin_of(case, run))
+
+
+def _smeared(moving: BodyFrames, time: Array, number: int) -> str:
+    """Caption: that bodies go farther than their size while the flow is averaged; "" if not."""
+    if len(time) < 2:
+        return ""
+    gone = moving.gone(number * float(time[1] - time[0]))
+    if not gone > 1.0:
+        return ""
+    return f"flow smeared: bodies go {gone:.2g} times their size in the time of a mean"
 
 
 def _write(
