@@ -273,6 +273,13 @@ CASES = {
         3, [SPHERE, SphereBody(radius=2, name="sphere-1")], {},
         "bodies[#2].name: 'sphere-1' is also the name of bodies[#1]; rename one",
     ),
+    **{
+        f"the name {name} of other particles": (
+            3, [SphereBody(radius=3, name=name)], {},
+            f"bodies[#1].name = '{name}': reserved for particles; expected another name",
+        )
+        for name in ("fluid", "fluid-2", "solutes", "all", "bodies")
+    },
     # what moves them
     "a spheroid that tumbles": (
         3, [SpheroidBody(half_length=4, radius=3, swim=Squirming(B1=1, tumble_rate=0.1))], {},

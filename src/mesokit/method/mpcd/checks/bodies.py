@@ -1,6 +1,7 @@
 """Bodies that are fine alone and wrong with the rest of a case: see `combinations`."""
 
 import math
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -20,6 +21,7 @@ MOST_FILLED = 0.9  # of the volume that walls leave
 LEAST_MASS = 10.0  # particles of the fluid
 LEAST_NEARBY = 5.0  # particles that take a counter-force
 ROOM = 4.0  # cells from a body to its own image
+RESERVED = re.compile(r"all|bodies|solutes|fluid(-\d+)?")  # names of other particles
 SIZES = ("radius", "half_length", "length", "size", "parts")  # keys that say how large one is
 
 
@@ -42,6 +44,8 @@ def bodies(case: Case) -> Iterator[str]:
                 f"{key}.swim.tumble_rate = {show(kind.swim.tumble_rate)}: only of a sphere or a "
                 "disk; others have no room to turn at once"
             )
+        if RESERVED.fullmatch(label):
+            yield f"{key}.name = {show(label)}: reserved for particles; expected another name"
         if label in labels:
             first = f"bodies[#{labels[label]}]"
             yield f"{key}.name: {show(label)} is also the name of {first}; rename one"
