@@ -74,6 +74,9 @@ FILES = {
     SPACE + BALL + 'fixed = ["w"]\n':
         "bodies[#1].fixed[#1] = 'w': expected 'x', 'y', 'z' or 'orientation'",
     SPACE + BALL + 'fixed = "x"\n': "bodies[#1].fixed = 'x': expected a list",
+    SPACE + BALL + 'counter_force = "yes"\n':
+        "bodies[#1].counter_force = 'yes': expected true or false",
+    SPACE + BALL + "counter_force = 1\n": "bodies[#1].counter_force = 1: expected true or false",
     SPACE + BALL + "mass = 300\ndensity = 3\n":
         "bodies[#1].density: not with mass; give one of them",
     SPACE + BALL + "interaction = false\n": "bodies[#1].interaction = false: expected a table",

@@ -140,6 +140,8 @@ def strict(hint: Any) -> Any:
         return Annotated[float, BeforeValidator(_real)]
     if hint is int:
         return Annotated[int, BeforeValidator(_whole)]
+    if hint is bool:
+        return Annotated[bool, BeforeValidator(_truth)]
     if isinstance(hint, type) and hint in FAMILIES:
         return Annotated[Any, FAMILIES[hint]]
     origin, args = typing.get_origin(hint), typing.get_args(hint)
@@ -176,6 +178,12 @@ def _whole(value: Any) -> int:
         if whole == int(whole):
             return int(whole)
     raise PydanticCustomError("whole", "expected a whole number")
+
+
+def _truth(value: Any) -> bool:
+    if isinstance(value, bool):
+        return value
+    raise PydanticCustomError("truth", "expected true or false")
 
 
 def _list(value: Any) -> Any:
@@ -395,6 +403,5 @@ def _expected(entry: Any) -> str:
     return {
         "dataclass_type": TABLE,
         "string_type": "expected a text in quotes",
-        "bool_type": "expected true or false",
         "model_attributes_type": TABLE,
     }.get(kind, str(entry["msg"]))
