@@ -74,6 +74,8 @@ FILES = {
     SPACE + BALL + 'fixed = ["w"]\n':
         "bodies[#1].fixed[#1] = 'w': expected 'x', 'y', 'z' or 'orientation'",
     SPACE + BALL + 'fixed = "x"\n': "bodies[#1].fixed = 'x': expected a list",
+    SPACE + BALL + 'name = "a"\n':
+        "bodies[#1].name = 'a': expected a longer text, length at least 2",
     SPACE + BALL + 'counter_force = "yes"\n':
         "bodies[#1].counter_force = 'yes': expected true or false",
     SPACE + BALL + "counter_force = 1\n": "bodies[#1].counter_force = 1: expected true or false",

@@ -385,6 +385,7 @@ _LIMITS = {
     "greater_than_equal": ("ge", "a number of at least"),
     "less_than": ("lt", "a number below"),
     "less_than_equal": ("le", "a number of at most"),
+    "string_too_short": ("min_length", "a longer text, length at least"),
     "too_short": ("min_length", "a longer list, length at least"),
     "too_long": ("max_length", "a shorter list, length at most"),
 }
