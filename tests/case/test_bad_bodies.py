@@ -108,8 +108,14 @@ FILES = {
         "bodies[#1].start.positions: missing; rule = 'given' needs them",
     SPACE + BALL + "start = { positions = [[1, 2, 3]] }\n":
         "bodies[#1].start.positions: only with rule = 'given'",
+    **{
+        SPACE + BALL + f"start = {{ rule = 'given', positions = {rows} }}\n":
+        f"bodies[#1].start.positions = {rows}: expected a list of rows, one for each body, of "
+        "finite numbers, or a file in quotes"
+        for rows in ("5", "[5, 5]", "[[nan, 3, 3]]", "[[true, 3, 3]]", "[['a', 3, 3]]")
+    },
     SPACE + BALL + "start = { orientations = [[1, 1, 0, 0]] }\n":
-        "bodies[#1].start.orientations: [1, 1, 0, 0] is no unit quaternion",
+        "bodies[#1].start.orientations[#1] = [1, 1, 0, 0]: expected a unit quaternion",
     SPACE + '[[bodies]]\nshape = "union"\nparts = [{ shape = "sphere", centre = [0, 0, 0], '
     'radius = 2, fluid = "inside" }]\n': "bodies[#1].parts[#1].fluid = 'inside': expected a solid",
     # what only a start can know

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import numbers
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
@@ -108,7 +109,21 @@ class CounterForce:
         return ball + (outer if self.shell else 0.0)
 
 
+ROWS = "expected a list of rows, one for each body, of finite numbers, or a file in quotes"
 Rows = Either[FileName | None, tuple[float, ...]]
+
+
+def _finite(given: Any) -> float:
+    """A finite number. Raises TypeError for anything else."""
+    if not isinstance(given, numbers.Real) or isinstance(given, bool):
+        raise TypeError
+    try:
+        number = float(given)
+    except OverflowError:
+        raise TypeError from None
+    if not math.isfinite(number):
+        raise TypeError
+    return number
 
 
 @component
@@ -142,6 +157,17 @@ class BodyStart:
         True, doc="with the velocities and spins of the run or file; if not, drawn ones"
     )
 
+    @field_validator("positions", "orientations", "velocities", "spins", mode="before")
+    @classmethod
+    def _of_rows(cls, given: Any) -> Any:
+        if given is None or isinstance(given, str):
+            return given
+        try:
+            rows = [[_finite(x) for x in row] for row in given]
+        except TypeError:
+            raise ValueError(ROWS) from None
+        return tuple(map(tuple, rows))
+
     def __post_init__(self) -> None:
         for key, rule in (("positions", GIVEN), ("run", RUN), ("file", FILE)):
             there = getattr(self, key) is not None
@@ -160,9 +186,9 @@ class BodyStart:
         if not (self.moving or self.known_elsewhere):
             raise ValueError("moving = false: only with rule = 'run' or 'file'")
         rows = self.orientations
-        for row in () if rows is None or isinstance(rows, str) else rows:
+        for i, row in enumerate(() if rows is None or isinstance(rows, str) else rows, start=1):
             if len(row) == 4 and abs(math.fsum(x * x for x in row) - 1.0) > 1e-6:
-                raise ValueError(f"orientations: {show(row)} is no unit quaternion")
+                raise ValueError(f"orientations[#{i}] = {show(row)}: expected a unit quaternion")
 
     @property
     def known_elsewhere(self) -> bool:
