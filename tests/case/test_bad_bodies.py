@@ -120,10 +120,10 @@ FILES = {
     'radius = 2, fluid = "inside" }]\n': "bodies[#1].parts[#1].fluid = 'inside': expected a solid",
     # what only a start can know
     PLANE + DISK + 'number = 2\nstart = { rule = "given", positions = [[2, 8], [13, 8]] }\n':
-        "bodies[#1].start: its body 2 overlaps body 1",
+        "bodies[#1].start.positions[#2] = [13, 8]: body 2 overlaps body 1",
     PLANE + DISK + 'start = { rule = "given", positions = [[8, 2]] }\n'
     '[[wall]]\nshape = "plates"\naxis = "y"\n':
-        "bodies[#1].start: its body 1 is in a wall, about 1 deep",
+        "bodies[#1].start.positions[#1] = [8, 2]: body 1 is in a wall, about 1 deep",
 }  # fmt: skip
 
 
@@ -427,21 +427,21 @@ STARTS = {
     "rods side by side": ([CapsuleBody(**ROD, **PAIR, start=given([10, 9], [10, 11.1]))], {}, ""),
     "rods": (
         [CapsuleBody(**ROD, **PAIR, start=given([10, 9], [10, 10.9]))], {},
-        "bodies[#1].start: its body 2 overlaps body 1",
+        "bodies[#1].start.positions[#2] = [10, 10.9]: body 2 overlaps body 1",
     ),
     "rods across an end": (
         [CapsuleBody(**ROD, **PAIR, start=given([6, 9], [26.1, 9]))], {},
-        "bodies[#1].start: its body 2 overlaps body 1",
+        "bodies[#1].start.positions[#2] = [26.1, 9]: body 2 overlaps body 1",
     ),
     "beside an end": ([CapsuleBody(**ROD, **PAIR, start=given([6, 9], [25.9, 9]))], {}, ""),
     "one in another": (
         [EllipseBody(**OVAL, start=given([9, 9])), DiskBody(radius=1, start=given([10, 9]))], {},
-        "bodies[#2].start: its body 1 overlaps body 1 of bodies[#1]",
+        "bodies[#2].start.positions[#1] = [10, 9]: body 1 overlaps body 1 of bodies[#1]",
     ),
     "corners": ([RectangleBody(**SQUARE, **PAIR, start=given([9, 9], [13.1, 13.1]))], {}, ""),
     "corners that overlap": (
         [RectangleBody(**SQUARE, **PAIR, start=given([9, 9], [12.9, 12.9]))], {},
-        "bodies[#1].start: its body 2 overlaps body 1",
+        "bodies[#1].start.positions[#2] = [12.9, 12.9]: body 2 overlaps body 1",
     ),
     "disks on one lattice": (
         [DiskBody(radius=3, start=BodyStart(rule="lattice")) for _ in range(2)], {},
@@ -450,15 +450,15 @@ STARTS = {
     "flat on a plate": ([EllipseBody(**OVAL, start=given([10, 2.1]))], SLIT, ""),
     "in a plate": (
         [EllipseBody(**OVAL, start=given([10, 1.8]))], SLIT,
-        "bodies[#1].start: its body 1 is in a wall, about 0.2 deep",
+        "bodies[#1].start.positions[#1] = [10, 1.8]: body 1 is in a wall, about 0.2 deep",
     ),
     "on edge in a plate": (
         [EllipseBody(**OVAL, start=ON_EDGE)], SLIT,
-        "bodies[#1].start: its body 1 is in a wall, about 1.1 deep",
+        "bodies[#1].start.positions[#1] = [10, 3.9]: body 1 is in a wall, about 1.1 deep",
     ),
     "around a post": (
         [EllipseBody(**OVAL, start=given([10, 10]))], POST,
-        "bodies[#1].start: its body 1 is in a wall, about 0.69 deep",
+        "bodies[#1].start.positions[#1] = [10, 10]: body 1 is in a wall, about 0.69 deep",
     ),
     "far from a post": ([DiskBody(radius=8, start=given([10, 19]))], POST, ""),
 }  # fmt: skip

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.case import Case
+from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.body.protocol import LATTICE, RANDOM
 from mesokit.method.mpcd.engine.bodies.allocate import masses_of
@@ -119,19 +120,24 @@ def _require_room(case: Case, places: Floats, turns: Floats) -> None:
     """Raise CaseError for bodies that overlap one another or a wall."""
     ends = np.cumsum([kind.number for kind in case.bodies])
 
-    def key(body: int) -> tuple[str, int]:
+    def key(body: int) -> tuple[int, int]:
         kind = int(np.searchsorted(ends, body, side="right"))
-        return f"bodies[#{kind + 1}]", body - int(ends[kind]) + case.bodies[kind].number + 1
+        return kind + 1, body - int(ends[kind]) + case.bodies[kind].number + 1
+
+    def named(kind: int, i: int) -> str:
+        rows = case.bodies[kind - 1].start.positions
+        if rows is None or isinstance(rows, str):
+            return f"bodies[#{kind}].start: its body {i}"
+        return f"bodies[#{kind}].start.positions[#{i}] = {show(rows[i - 1])}: body {i}"
 
     met = overlap(case, places, turns)
     if met is not None:
         (first, i), (last, j) = map(key, met)
-        of = "" if first == last else f" of {first}"
-        raise CaseError(f"{last}.start: its body {j} overlaps body {i}{of}")
+        of = "" if first == last else f" of bodies[#{first}]"
+        raise CaseError(f"{named(last, j)} overlaps body {i}{of}")
     deep = deepest_in_wall(case, places, turns) if case.walls else None
     if deep is not None:
-        kind, i = key(deep[0])
-        raise CaseError(f"{kind}.start: its body {i} is in a wall, about {deep[1]:.2g} deep")
+        raise CaseError(f"{named(*key(deep[0]))} is in a wall, about {deep[1]:.2g} deep")
 
 
 def first_velocities(
