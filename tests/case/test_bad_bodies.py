@@ -257,8 +257,19 @@ CASES = {
         "images may meet, for it is 14 long; expected at most 12 in a box of 16 along x",
     ),
     "a small sphere": (
-        3, [SPHERE, SphereBody(radius=0.5)], {}, "bodies[#2].radius = 0.5: a mass of 5.24; "
-        "expected at least 10, that of 10 particles of the fluid",
+        3, [SPHERE, SphereBody(radius=0.5)], {}, "bodies[#2].radius = 0.5: it is 1 cells "
+        "thick, with a mass of 5.24; expected at least 10, that of 10 particles of the fluid, and "
+        "2 cells: a finer resolution, with all lengths in more cells",
+    ),
+    "a thin rod": (
+        2, [CapsuleBody(length=5, radius=0.05, density=1)], {}, "bodies[#1].radius = 0.05: it is "
+        "0.1 cells thick, with a mass of 0.498; expected at least 10, that of 10 particles of the "
+        "fluid, and 2 cells: a finer resolution, with all lengths in more cells",
+    ),
+    "a flat spheroid": (
+        3, [SpheroidBody(half_length=0.01, radius=4)], {}, "bodies[#1].half_length = 0.02: it is "
+        "0.02 cells thick, with a mass of 6.7; expected at least 10, that of 10 particles of the "
+        "fluid, and 2 cells: a finer resolution, with all lengths in more cells",
     ),
     "a light sphere": (
         3, [SphereBody(radius=3, mass=15)], {"fluid": Fluid(mass=2)}, "bodies[#1].mass = 15: a "
@@ -274,7 +285,12 @@ CASES = {
     ),
     "no fluid left": (
         2, [DiskBody(radius=3, number=9)], {},
-        "bodies: they fill 254.5 of 256 cells; expected at most 90%: fewer or smaller bodies",
+        "bodies[#1].number = 9: bodies fill 254.5 of 256 cells; expected at most 90%: fewer or "
+        "smaller bodies",
+    ),
+    "one body too many": (
+        2, [RectangleBody(size=[12, 12]), RectangleBody(size=[10, 10])], {},
+        "bodies: they fill 244 of 256 cells; expected at most 90%: fewer or smaller bodies",
     ),
     "one name": (
         3, [SphereBody(radius=3, name="ball"), SphereBody(radius=2, name="ball")], {},

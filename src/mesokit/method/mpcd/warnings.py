@@ -15,6 +15,7 @@ from mesokit.case.registry import family_of
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import slit_of, solids_of
+from mesokit.method.mpcd.checks.bodies import THIN_BODY
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
 from mesokit.method.mpcd.expected.molecules import (
@@ -30,7 +31,6 @@ from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solids
 SLIPPERY = 0.03  # slip length in cells
 RADIANS = 0.01  # an angle of no less may have been meant in radians
-THIN_BODY = 2.0  # cells
 LONG_STRIDE = 0.25  # radii that a body flies in a timestep
 TURBULENT = 2000  # Reynolds number of a pipe, of the mean velocity and the diameter
 SHOCK = 2.0  # speeds of sound at which images may move; those of 8 do not follow theory

@@ -22,6 +22,8 @@ LEAST_MASS = 10.0  # particles of the fluid
 LEAST_NEARBY = 5.0  # particles that take a counter-force
 ROOM = 4.0  # cells from a body to its own image
 RESERVED = re.compile(r"all|bodies|solutes|fluid(-\d+)?")  # names of other particles
+THIN_BODY = 2.0  # cells across, below which flow around it is not resolved
+RADII = ("radius", "half_length")
 SIZES = ("radius", "half_length", "length", "size", "parts")  # keys that say how large one is
 
 
@@ -56,8 +58,12 @@ def bodies(case: Case) -> Iterator[str]:
     d, room = case.box.dimension, free_volume(case)
     filled = sum(kind.number * kind.solid(d).volume for kind in case.bodies)
     if filled > MOST_FILLED * room:
+        shares = [kind.number * kind.solid(d).volume for kind in case.bodies]
+        most = shares.index(max(shares))
+        number = case.bodies[most].number
+        said = f"bodies[#{most + 1}].number = {number}: bodies" if number > 1 else "bodies: they"
         yield (
-            f"bodies: they fill {filled:.4g} of {room:.4g} cells; expected at most "
+            f"{said} fill {filled:.4g} of {room:.4g} cells; expected at most "
             f"{MOST_FILLED:.0%}: fewer or smaller bodies"
         )
     if case.solutes is not None and (need := needed_substeps(case)) > MOST_SUBSTEPS:
@@ -205,21 +211,30 @@ def _size(case: Case, kind: Body) -> Iterator[str]:
             )
     mass = kind.mass_in(d, fluid.density * fluid.mass)
     if mass < LEAST_MASS * fluid.mass:
+        found = f"a mass of {mass:.3g}"
         if kind.mass is not None:
             said = f"mass = {show(kind.mass)}"
+        elif solid.thinnest < THIN_BODY:
+            said = _said(kind, 0.5 * solid.thinnest)
+            found = f"it is {solid.thinnest:.3g} cells thick, with {found}"
         elif kind.density is not None:
             said = f"density = {show(kind.density)}"
         yield (
-            f"{said}: a mass of {mass:.3g}; expected at least {LEAST_MASS * fluid.mass:g}, that of "
+            f"{said}: {found}; expected at least {LEAST_MASS * fluid.mass:g}, that of "
             f"{LEAST_MASS:g} particles of the fluid"
+            + (
+                f", and {THIN_BODY:g} cells: a finer resolution, with all lengths in more cells"
+                if solid.thinnest < THIN_BODY
+                else ""
+            )
         )
 
 
 def _said(kind: Body, radius: float) -> str:
-    """What makes a body as large as it is: key and value."""
+    """What makes a body as long or as thin as it is, half of that given: key and value."""
     for key in SIZES:
         value = getattr(kind, key, None)
-        if value is not None and (key != "radius" or math.isclose(value, radius)):
+        if value is not None and (key not in RADII or math.isclose(value, radius)):
             return key if key == "parts" else f"{key} = {show(value)}"
     return f"shape = {show(name_of(kind))}"
 
