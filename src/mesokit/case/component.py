@@ -317,14 +317,18 @@ def _tag(given: Any, hint: Any, path: str) -> str:
         return f"expected a text in quotes, {names}"
     several = len(known) > MANY and not nearest(given, known)
     words = f"expected {names}" if several else _choice(given, known)
-    if _is_open(hint) and not difflib.get_close_matches(given, known, 1, 0.6):
+    groups = {family.group for family in _families(hint)}
+    elsewhere = any(given in one.parts for one in FAMILIES.values() if one.group in groups)
+    if groups and not elsewhere and not difflib.get_close_matches(given, known, 1, 0.6):
         words += "; your own parts need mesokit --import MODULE"
     return words
 
 
-def _is_open(hint: Any) -> bool:
-    """Whether a type hint names a family, to which users can add parts."""
-    return isinstance(hint, Family) or any(map(_is_open, typing.get_args(hint)))
+def _families(hint: Any) -> list[Family]:
+    """The families that a type hint names, to which users can add parts."""
+    if isinstance(hint, Family):
+        return [hint]
+    return [found for arg in typing.get_args(hint) for found in _families(arg)]
 
 
 def _walk(

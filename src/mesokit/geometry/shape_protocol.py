@@ -228,3 +228,9 @@ class Joinable(Repeatable):
 @component
 class Simple(Joinable):
     """A shape that can also be part of an intersection."""
+
+
+@family("shape with an end", "shape", "mesokit.shape")
+@component
+class Movable(Simple):
+    """A simple shape that has an end, which can also be part of a body that moves."""

@@ -5,11 +5,11 @@ from typing import Literal
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry.region import Region, Room, capsule
-from mesokit.geometry.shape_protocol import Simple
+from mesokit.geometry.shape_protocol import Movable
 
 
 @component
-class Capsule(Simple):
+class Capsule(Movable):
     """All places within a radius of the straight line between two ends."""
 
     per_axis = ("start", "end")

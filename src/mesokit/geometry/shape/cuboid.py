@@ -7,11 +7,11 @@ from pydantic import field_validator
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry.region import Region, Room, brick
-from mesokit.geometry.shape_protocol import Centred, Simple, positive
+from mesokit.geometry.shape_protocol import Centred, Movable, positive
 
 
 @component
-class Cuboid(Centred, Simple):
+class Cuboid(Centred, Movable):
     """A cuboid (3D), turned about z by an angle."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)

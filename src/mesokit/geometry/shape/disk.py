@@ -5,11 +5,11 @@ from typing import ClassVar, Literal
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry.region import Region, Room, ball
-from mesokit.geometry.shape_protocol import Centred, Simple
+from mesokit.geometry.shape_protocol import Centred, Movable
 
 
 @component
-class Disk(Centred, Simple):
+class Disk(Centred, Movable):
     """A disk (2D): the cross-section of a cylinder."""
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)

@@ -8,11 +8,11 @@ from pydantic import field_validator
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry.region import Region, Room, ellipsoid
-from mesokit.geometry.shape_protocol import Centred, Simple, positive
+from mesokit.geometry.shape_protocol import Centred, Movable, positive
 
 
 @component
-class Ellipse(Centred, Simple):
+class Ellipse(Centred, Movable):
     """An ellipse (2D), turned by an angle: the largest in the rectangle of this size."""
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)

@@ -7,11 +7,11 @@ from pydantic import field_validator
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry.region import Region, Room, brick
-from mesokit.geometry.shape_protocol import Centred, Simple, positive
+from mesokit.geometry.shape_protocol import Centred, Movable, positive
 
 
 @component
-class Rectangle(Centred, Simple):
+class Rectangle(Centred, Movable):
     """A rectangle (2D), turned by an angle."""
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)

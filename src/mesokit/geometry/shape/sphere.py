@@ -5,11 +5,11 @@ from typing import ClassVar, Literal
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry.region import Region, Room, ball
-from mesokit.geometry.shape_protocol import Centred, Simple
+from mesokit.geometry.shape_protocol import Centred, Movable
 
 
 @component
-class Sphere(Centred, Simple):
+class Sphere(Centred, Movable):
     """A sphere (3D)."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)

@@ -8,11 +8,11 @@ from mesokit.case.box import Axis
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either, Many
 from mesokit.geometry.region import Region, Room, ellipsoid
-from mesokit.geometry.shape_protocol import Centred, Simple, a_direction, unit_vector
+from mesokit.geometry.shape_protocol import Centred, Movable, a_direction, unit_vector
 
 
 @component
-class Spheroid(Centred, Simple):
+class Spheroid(Centred, Movable):
     """An ellipsoid of revolution (3D): long as a rice grain, or flat as a lentil."""
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)

@@ -7,7 +7,7 @@ from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
 from mesokit.geometry.primitive import MOVABLE
 from mesokit.geometry.region import Region, Room
-from mesokit.geometry.shape_protocol import Simple
+from mesokit.geometry.shape_protocol import Movable
 from mesokit.method.mpcd.body.protocol import Body
 
 
@@ -20,7 +20,7 @@ class UnionBody(Body):
 
     dimensions: ClassVar[tuple[int, ...]] = (2, 3)
     shape: Literal["union"] = tag("union")
-    parts: Many[Simple] = param(doc="shapes, each in the body's frame", min_length=1)
+    parts: Many[Movable] = param(doc="shapes, each in the body's frame", min_length=1)
 
     def __post_init__(self) -> None:
         super(UnionBody, self).__post_init__()  # noqa: UP008  the decorator makes a new class
@@ -32,12 +32,12 @@ class UnionBody(Body):
         return region.union(region_of_part(part) for part in self.parts)
 
 
-def region_of_part(part: Simple) -> Region:
+def region_of_part(part: Movable) -> Region:
     """A shape as part of a body."""
     d = 2 if part.dimensions == (2,) else 3
     return part.body(Room((1,) * d, (False,) * d))
 
 
-def moves(part: Simple) -> bool:
+def moves(part: Movable) -> bool:
     """Whether a shape can be part of a body: it is convex, and has an end."""
     return all(len(term) == 1 and MOVABLE[term[0].code] for term in region_of_part(part))

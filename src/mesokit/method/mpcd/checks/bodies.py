@@ -7,7 +7,7 @@ from typing import Any
 
 from mesokit.case.case import Case
 from mesokit.case.component import name_of, one_of, show, tag_of
-from mesokit.geometry.shape_protocol import Simple, closed_axes
+from mesokit.geometry.shape_protocol import Movable, closed_axes
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.body.inertia import is_inside
 from mesokit.method.mpcd.body.protocol import Body, named
@@ -112,7 +112,7 @@ def _shape(case: Case, kind: Body) -> Iterator[str]:
     usable = [found[1] for one in BODIES if d in one.dimensions and (found := tag_of(one))]
     if d not in kind.dimensions:
         yield f"shape = {show(name_of(kind))}: not in {d}D; expected {one_of(usable)}"
-    simple = [found[1] for one in SHAPES if issubclass(one, Simple) and (found := tag_of(one))]
+    simple = [found[1] for one in SHAPES if issubclass(one, Movable) and (found := tag_of(one))]
     expected = one_of([name for name in usable if name in simple])
     for i, part in enumerate(kind.parts if isinstance(kind, UnionBody) else (), start=1):
         key = f"parts[#{i}]"
