@@ -236,6 +236,7 @@ class TestNewStudies:
 @pytest.mark.parametrize(("given", "wanted"), [
     ("visocsity", "visocsity: no key of a case; 'viscosity' is explained at observe.flow-rate"),
     ("restituton", "'restitution' is explained at spheres"),
+    ("bodys", "bodys: unknown key; did you mean 'bodies'?"),
     ("denisty", "denisty: unknown key; did you mean 'density'?"),
     ("box.toml", "box.toml: expected a key of a case, such as run.steps"),
     ("zzz", "zzz: unknown key; mesokit explain lists the sections of a case"),

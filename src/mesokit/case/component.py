@@ -252,9 +252,25 @@ def known_keys(cls: Any, rename: dict[str, str] | None = None) -> list[str]:
 
 def nearest(given: str, known: Iterable[str], likeness: float = 0.5) -> str:
     """'; did you mean X?' for the closest valid name, or nothing."""
+    close = closest(given, known, likeness)
+    return f"; did you mean {show(close)}?" if close else ""
+
+
+def closest(given: str, known: Iterable[str], likeness: float) -> str:
+    """The name that is most like a word, first of all its plural; "" if none is so much like it.
+
+    >>> closest("bodys", ["bonds", "bodies"], 0.75)
+    'bodies'
+    """
     plain = {name.lower().replace("_", "-"): name for name in known}
-    close = difflib.get_close_matches(given.lower().replace("_", "-"), plain, 1, likeness)
-    return f"; did you mean {show(plain[close[0]])}?" if close else ""
+    word = given.lower().replace("_", "-")
+    same = [name for name in plain if _singular(name) == _singular(word)]
+    near = same or difflib.get_close_matches(word, plain, 1, likeness)
+    return plain[near[0]] if near else ""
+
+
+def _singular(name: str) -> str:
+    return name[:-3] + "y" if name.endswith("ies") else name.removesuffix("s")
 
 
 def require_known(given: Iterable[str], known: Sequence[str]) -> None:

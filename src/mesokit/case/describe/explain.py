@@ -1,11 +1,10 @@
 """Explanations of the keys of a case file: `mesokit explain`."""
 
-import difflib
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from mesokit.case.component import nearest, one_of, show
+from mesokit.case.component import closest, nearest, one_of, show
 from mesokit.case.describe.kept import kept_schema
 from mesokit.case.describe.keys import Key, keys_of, parts_of
 from mesokit.errors import CaseError
@@ -187,10 +186,10 @@ def _unknown(path: str, word: str, place: Place, definitions: Any) -> CaseError:
             found.setdefault(key, {})[f"{part.path}.{key}"] = None
         for each in re.findall(r"[a-z]{5,}", part.node.get("description", "").lower()):
             found.setdefault(each, {})[part.path] = None
-    close = difflib.get_close_matches(word, [*known, *found], 1, NEAR)
+    close = closest(word, [*known, *found], NEAR)
     if not close:
         return CaseError(f"{path}: unknown key; mesokit explain lists the sections of a case")
-    if close[0] in known:
-        return CaseError(f"{path}: unknown key; did you mean {one_of(close)}?")
-    where = ", ".join(sorted(found[close[0]], key=lambda path: path.count("."))[:MOST])
-    return CaseError(f"{path}: no key of a case; {show(close[0])} is explained at {where}")
+    if close in known:
+        return CaseError(f"{path}: unknown key; did you mean {show(close)}?")
+    where = ", ".join(sorted(found[close], key=lambda path: path.count("."))[:MOST])
+    return CaseError(f"{path}: no key of a case; {show(close)} is explained at {where}")
