@@ -86,8 +86,10 @@ def test_disks_that_slip(fraction, slip):
 def test_drawn_bodies_refuse():
     with pytest.raises(ValueError, match="slip = -1"):
         sphere_friction_in_cube(1, 10, 1, -1)
-    with pytest.raises(ValueError, match="concentration"):
-        sphere_friction_in_cube(1, 1.9, 1)
+    with pytest.raises(ValueError, match=r"^radius = 6, box_length = 10: .* at most 0\.5 of"):
+        sphere_friction_in_cube(6, 10, 1)
+    with pytest.raises(ValueError, match=r"^radius = 5, box_length = 10: .* at most 0\.472 of"):
+        disk_friction_in_square(5, 10, 1)
     with pytest.raises(ValueError, match="slip = -1"):
         disk_friction_in_square(1, 10, 1, -1)
     with pytest.raises(ValueError, match="friction = 0"):

@@ -126,6 +126,8 @@ def test_heights_of_a_buoyant_body():
 
 
 def test_suspensions_refuse():
+    with pytest.raises(ValueError, match=r"fraction = 1\.5: expected a volume fraction below 1"):
+        suspension_viscosity(1.5)
     with pytest.raises(ValueError, match="order = 2"):
         suspension_viscosity(0.1, 2, order=2)
     with pytest.raises(ValueError, match="radius = 3"):

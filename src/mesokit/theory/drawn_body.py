@@ -4,7 +4,7 @@ import math
 
 from mesokit.theory._check import not_negative, positive
 from mesokit.theory.cubic_array import cubic_array_drag
-from mesokit.theory.square_array import square_array_drag
+from mesokit.theory.square_array import DENSEST, square_array_drag
 
 
 def sphere_friction_in_cube(
@@ -33,6 +33,7 @@ def sphere_friction_in_cube(
     915.1
     """
     positive(radius=radius, box_length=box_length, viscosity=viscosity)
+    _require_room(radius, box_length, 0.5)
     not_negative(slip=slip)
     fraction = 4 / 3 * math.pi * (radius / box_length) ** 3
     mobility = 1 / cubic_array_drag(fraction) + (1 - 2 * fraction) * slip / (radius + 2 * slip)
@@ -54,6 +55,7 @@ def disk_friction_in_square(
     106.91
     """
     positive(radius=radius, box_length=box_length, viscosity=viscosity)
+    _require_room(radius, box_length, math.sqrt(DENSEST / math.pi))
     return viscosity * square_array_drag(math.pi * (radius / box_length) ** 2, slip / radius)
 
 
@@ -69,3 +71,12 @@ def einstein_diffusion(friction: float, kT: float = 1.0) -> float:
     """
     positive(friction=friction, kT=kT)
     return kT / friction
+
+
+def _require_room(radius: float, box_length: float, most: float) -> None:
+    """Raise ValueError for a radius that is more than so much of the box."""
+    if radius > most * box_length:
+        raise ValueError(
+            f"radius = {radius!r}, box_length = {box_length!r}: expected a radius of at most "
+            f"{most:.4g} of the box"
+        )

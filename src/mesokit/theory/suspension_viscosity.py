@@ -24,6 +24,8 @@ def suspension_viscosity(
     """
     dimension_two_or_three(dimension)
     not_negative(fraction=fraction, slip=slip)
+    if fraction >= 1:
+        raise ValueError(f"fraction = {fraction!r}: expected a volume fraction below 1")
     one_of((1, 2), order=order)
     stretch = dimension + 2
     first = 1 + stretch / 2 * fraction * (1 + 2 * slip) / (1 + stretch * slip)
