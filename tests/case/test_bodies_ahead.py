@@ -10,12 +10,14 @@ from mesokit import (
     SRD,
     Box,
     Case,
+    CaseError,
     Disk,
     Fluid,
     NoCollision,
     Plates,
     Run,
     SRDPlusA,
+    Trajectory,
     theory,
 )
 from mesokit.method.mpcd.body.capsule import CapsuleBody
@@ -26,20 +28,21 @@ from mesokit.method.mpcd.body.union import UnionBody
 from mesokit.method.mpcd.derived import derive, summary
 from mesokit.method.mpcd.engine.cuda.refused import refused
 from mesokit.method.mpcd.method import METHOD
+from mesokit.method.mpcd.observe.body_correlation import BodyCorrelation
 
 DENSE = {"density": 10, "collision": SRDPlusA()}
 
 
-def case_of(size, *bodies, walls=(), **fluid):
+def case_of(size, *bodies, walls=(), observe=(), **fluid):
     """A case with these bodies, in a fluid that conserves angular momentum unless said."""
-    return Case(
-        run=Run(steps=1), box=Box(size), bodies=bodies, walls=walls, fluid=Fluid(**DENSE | fluid)
-    )
+    fluid = Fluid(**DENSE | fluid)
+    parts = {"bodies": bodies, "walls": walls, "observe": observe, "fluid": fluid}
+    return Case(run=Run(steps=1), box=Box(size), **parts)
 
 
-def warnings_of(*given, **more):
+def warnings_of(*given, word="bodies", **more):
     """What such a case is warned of its bodies."""
-    return [line for line in derive(case_of(*given, **more)).warnings if "bodies" in line]
+    return [line for line in derive(case_of(*given, **more)).warnings if word in line]
 
 
 def test_each_kind_has_a_row():
@@ -157,6 +160,19 @@ def test_bodies_that_do_not_turn_need_no_angular_momentum(rule):
     fixed = ["orientation"] if rule.acts else []
     found = warnings_of([20, 20], DiskBody(radius=3, fixed=fixed), collision=rule)
     assert not [line for line in found if "angular momentum" in line]
+
+
+def test_a_trajectory_of_no_bodies_is_refused():
+    with pytest.raises(CaseError, match=r"^trajectory.of = 'bodies': .*'bodies' needs \[\[bodies"):
+        Case(run=Run(steps=1), box=Box([20, 20]), trajectory=Trajectory(every=1, of="bodies"))
+
+
+def test_lags_beyond_the_run_are_said():
+    [line] = warnings_of(
+        [20, 20], DiskBody(radius=3), observe=[BodyCorrelation(max_lag=500)], word="max_lag"
+    )
+    expected = "observe[#1].max_lag = 500: more than run.steps = 1, beyond which there are no lags"
+    assert line == expected
 
 
 def test_they_run_on_ranks_of_processors_alone():

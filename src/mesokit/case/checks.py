@@ -137,7 +137,12 @@ def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
     number, _ = written(given, groups)
     noun = groups[0].noun if groups else "particle"
     if given.of not in known:
-        yield f"trajectory.of = {show(given.of)}: expected {one_of(known)}"
+        lacking = (
+            f"; {show(given.of)} needs [[{given.of}]]"
+            if getattr(case, given.of, None) == ()
+            else ""
+        )
+        yield f"trajectory.of = {show(given.of)}: expected {one_of(known)}{lacking}"
     elif number == 0:
         yield f"trajectory.of = {show(given.of)}: there is no such {noun}"
     elif given.subset is not None and given.subset > number:
