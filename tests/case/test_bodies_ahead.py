@@ -20,6 +20,7 @@ from mesokit import (
     Trajectory,
     theory,
 )
+from mesokit.case.describe.explain import explain
 from mesokit.method.mpcd.body.capsule import CapsuleBody
 from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.protocol import BodyTrap, GapPotential
@@ -173,6 +174,11 @@ def test_lags_beyond_the_run_are_said():
     )
     expected = "observe[#1].max_lag = 500: more than run.steps = 1, beyond which there are no lags"
     assert line == expected
+
+
+def test_both_modes_of_a_spheroid_are_explained():
+    [found] = explain("bodies.spheroid.swim")
+    assert "(B1 + B2 x/a) t_x" in " ".join(found.meaning.split())
 
 
 def test_they_run_on_ranks_of_processors_alone():

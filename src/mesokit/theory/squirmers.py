@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 def squirmer_speed(B1: float, dimension: int = 3, aspect: float = 1.0) -> float:
     """Swimming speed B1 (1 - N) in a fluid without bounds, N the depolarisation factor of the axis.
 
-    2 B1/3 of a sphere and B1/2 of a disk for any B2; r B1/(1 + r) of an ellipse. The surface
-    velocity of a spheroid or an ellipse is B1 (t.e) along its tangent t.
+    2 B1/3 of a sphere and B1/2 of a disk; r B1/(1 + r) of an ellipse. The surface velocity of a
+    spheroid or an ellipse is B1 (t.e) along its tangent t. B2 changes no speed, by symmetry.
 
     Parameters: `B1` in cells per unit of time; `dimension` 2 or 3; `aspect` r, the half axis along
     e over that across (below 1: oblate). Raises ValueError for a value out of range. Source: M. J.

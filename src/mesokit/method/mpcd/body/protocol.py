@@ -69,9 +69,10 @@ class Squirming:
     """Velocity of a surface along itself, by which a body swims.
 
     At an angle theta from the body's axis x it is B1 sin theta + B2 sin theta cos theta on a
-    sphere, B1 sin theta + B2 sin 2 theta on a disk, towards larger angles, and B1 t_x along the
-    tangent t of a spheroid or an ellipse (Lighthill 1952, Blake 1971, Keller and Wu 1977). A
-    pusher has a B2 of the other sign than B1."""
+    sphere, B1 sin theta + B2 sin 2 theta on a disk, towards larger angles. On a spheroid it is
+    (B1 + B2 x/a) t_x along the tangent t, on an ellipse (B1 + 2 B2 x/a) t_x, at the height x
+    along an axis of half length a (Lighthill 1952, Blake 1971, Keller and Wu 1977, Theers et al.
+    2016). A pusher has a B2 of the other sign than B1."""
 
     B1: float = param(0.0, doc="first mode, which moves the body", unit="a/time", ge=-1e3, le=1e3)
     B2: float = param(0.0, doc="second mode, which stirs the fluid", unit="a/time", ge=-1e3, le=1e3)
