@@ -101,6 +101,19 @@ WARNED = {
         [20, 20], [UnionBody(parts=[Disk([0, 0], 3), Disk([4, 0], 3)])], {},
         "bodies[#1].parts: some overlap, so its volume and inertia are sampled on a grid",
     ),
+    "apart": (
+        [20, 20], [UnionBody(parts=[Disk([0, 0], 2), Disk([4.5, 0], 2)])], {},
+        "bodies[#1].parts: they lie apart, in 2 pieces, which move as one body with fluid between "
+        "them",
+    ),
+    "held": (
+        [20, 20], [DiskBody(radius=3, fixed=["x", "y"], force=[1, 0])], {},
+        "bodies[#1].force = [1, 0]: it acts along fixed axes alone, and moves nothing",
+    ),
+    "not turned": (
+        [20, 20], [DiskBody(radius=3, fixed=["orientation"], torque=1)], {},
+        "bodies[#1].torque = 1: the orientation is fixed, so that it turns nothing",
+    ),
     "crowded": (
         [12, 12], [DiskBody(radius=3, number=2)], {}, "bodies: two of them reach 6.5 from centre "
         "to centre, more than half of the box of 12: of the images of another, only the nearest "
@@ -128,7 +141,8 @@ HOLD = {"trap": BodyTrap(k=1)}
     "body",
     [
         DiskBody(radius=3, force=[1, 0], counter_force=True),
-        DiskBody(radius=3, force=[1, 0], fixed=["x"]),
+        DiskBody(radius=3, force=[1, 0], fixed=["y"], counter_force=True),
+        UnionBody(parts=[Disk([0, 0], 2), Disk([4, 0], 2)]),
         DiskBody(radius=3, force=[1, 0], **HOLD),
         DiskBody(radius=3, density=5, virtual="none"),
         DiskBody(radius=3, density=5, surface="slip"),

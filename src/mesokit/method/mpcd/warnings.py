@@ -3,18 +3,20 @@
 import contextlib
 import math
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
 from mesokit import theory
 from mesokit.case.box import AXES
 from mesokit.case.case import Case
-from mesokit.case.component import name_of, one_of
+from mesokit.case.component import name_of, one_of, show
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.registry import family_of
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import slit_of, solids_of
+from mesokit.method.mpcd.body.inertia import pieces
 from mesokit.method.mpcd.checks.bodies import THIN_BODY
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
@@ -166,6 +168,12 @@ def _body_warnings(case: Case, numbers: Derived) -> Iterator[str]:
         key, solid, mass = f"bodies[#{i}]", kind.solid(d), kind.mass_in(d, density)
         if solid.overlaps:
             yield f"{key}.parts: some overlap, so its volume and inertia are sampled on a grid"
+        if (apart := pieces(solid, d)) > 1:
+            yield (
+                f"{key}.parts: they lie apart, in {apart} pieces, which move as one body with "
+                "fluid between them"
+            )
+        yield from (f"{key}.{note}" for note in _idle(case, kind))
         if _above(THIN_BODY, solid.thinnest, 3):
             yield (
                 f"{key}: it is {solid.thinnest:.3g} cells thick; below {THIN_BODY:g} the flow "
@@ -187,6 +195,18 @@ def _body_warnings(case: Case, numbers: Derived) -> Iterator[str]:
     yield from _images_of_bodies(case)
     yield from _turning_bodies(case, numbers)
     yield from _pushed_bodies(case)
+
+
+def _idle(case: Case, kind: Any) -> Iterator[str]:
+    """A force or torque on what is fixed."""
+    free = [axis not in kind.fixed for axis in case.box.axes]
+    force = np.array(kind.force or 0.0)
+    acts = np.any(free) if kind.frame == "body" else np.any(force * free)
+    if force.any() and not acts and not kind.balanced:
+        yield f"force = {show(kind.force)}: it acts along fixed axes alone, and moves nothing"
+    shell = kind.counter is not None and kind.counter.shell
+    if np.any(kind.torque or 0.0) and "orientation" in kind.fixed and not shell:
+        yield f"torque = {show(kind.torque)}: the orientation is fixed, so that it turns nothing"
 
 
 def _images_of_bodies(case: Case) -> Iterator[str]:

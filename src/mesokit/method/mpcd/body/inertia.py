@@ -85,13 +85,28 @@ def _grid(parts: list[Part], own: list[Integrals], d: int) -> tuple[Floats, floa
     return np.stack(np.meshgrid(*along, indexing="ij"), -1).reshape(-1, d), step
 
 
-def _inside(parts: list[Part], places: Floats) -> NDArray[np.int64]:
-    """How many parts each place is in."""
+def _inside(parts: list[Part], places: Floats, depth: float = INSIDE) -> NDArray[np.int64]:
+    """How many parts each place is in, or nearer to than minus a depth."""
     found, table = np.zeros(len(places), np.int64), np.array([part.numbers for part in parts])
     zero = (0.0,) * places.shape[1]
     for part, numbers in zip(parts, table, strict=True):
-        count_inside(part.code, address(numbers), INSIDE, zero, np.ascontiguousarray(places), found)
+        count_inside(part.code, address(numbers), depth, zero, np.ascontiguousarray(places), found)
     return found
+
+
+def pieces(solid: Solid, dimension: int) -> int:
+    """In how many separate pieces a body is; gaps narrower than two samples do not count."""
+    from scipy import ndimage
+
+    if len(solid.parts) == 1:
+        return 1
+    parts = list(solid.parts)
+    own = [PRIMITIVES[part.code].integrals(part.numbers, dimension) for part in parts]
+    places, step = _grid(parts, own, dimension)
+    at = np.rint((places - places.min(axis=0)) / step).astype(int)
+    near = np.zeros(at.max(axis=0) + 1, bool)
+    near[tuple(at.T)] = _inside(parts, places, step) > 0
+    return int(ndimage.label(near, np.ones((3,) * dimension))[1])
 
 
 def is_inside(solid: Solid, place: Sequence[float]) -> bool:
