@@ -43,6 +43,8 @@ from mesokit.method.mpcd.body.rectangle import RectangleBody
 from mesokit.method.mpcd.body.sphere import SphereBody
 from mesokit.method.mpcd.body.spheroid import SpheroidBody
 from mesokit.method.mpcd.body.union import UnionBody
+from mesokit.method.mpcd.checks.bodies import LONGEST_PATH
+from mesokit.method.mpcd.engine.bodies.near import LISTS_HOLD, PARTNERS_HOLD
 from mesokit.method.mpcd.start.bodies import first_places
 from tests.helpers.refusals import refused
 
@@ -283,8 +285,8 @@ CASES = {
         "smaller bodies",
     ),
     "one body too many": (
-        2, [RectangleBody(size=[12, 12]), RectangleBody(size=[10, 10])], {},
-        "bodies: they fill 244 of 256 cells; expected at most 90%: fewer or smaller bodies",
+        2, [RectangleBody(size=[8, 8]) for _ in range(4)], {},
+        "bodies: they fill 256 of 256 cells; expected at most 90%: fewer or smaller bodies",
     ),
     "one name": (
         3, [SphereBody(radius=3, name="ball"), SphereBody(radius=2, name="ball")], {},
@@ -373,6 +375,37 @@ CASES = {
         2, [DiskBody(radius=3, start=BodyStart(velocities=[[0, 0], [0, 0]]))], {},
         "bodies[#1].start.velocities: 2 rows; expected 1, one for each body (number)",
     ),
+    # what moves too fast
+    "a fast start": (
+        2, [DiskBody(radius=3, start=BodyStart(velocities=[[100, 0]]))], {},
+        "bodies[#1].start.velocities[#1] = [100, 0]: it moves by 10 cells in a timestep; expected "
+        "at most 0.35: a shorter fluid.timestep, or slower",
+    ),
+    "a fast turn": (
+        2, [EllipseBody(size=[6, 4], start=BodyStart(spins=[[2]]))], {},
+        "bodies[#1].start.spins[#1] = [2]: it moves by 0.6 cells in a timestep; expected at most "
+        "0.35: a shorter fluid.timestep, or slower",
+    ),
+    "a strong force": (
+        2, [DiskBody(radius=3, mass=200, force=[1e6, 0])], {},
+        "bodies[#1].force = [1000000, 0]: in the first timestep the surface gets to 50 cells in a "
+        "timestep; expected at most 0.35: a shorter fluid.timestep, or weaker",
+    ),
+    "a strong torque": (
+        2, [DiskBody(radius=3, mass=200, torque=1e6)], {},
+        "bodies[#1].torque = 1000000: in the first timestep the surface gets to 33.3 cells in a "
+        "timestep; expected at most 0.35: a shorter fluid.timestep, or weaker",
+    ),
+    "a stiff trap": (
+        2, [DiskBody(radius=3, mass=200, trap=BodyTrap(k=1e9))], {},
+        "bodies[#1].trap.k = 1000000000: too stiff, it swings by 224 rad in a timestep; expected "
+        "at most 3.14, or 1.97e+05",
+    ),
+    "a stiff trap of the angle": (
+        2, [EllipseBody(size=[6, 4], mass=200, trap=BodyTrap(angular=1e9))], {},
+        "bodies[#1].trap.angular = 1000000000: too stiff, it swings by 124 rad in a timestep; "
+        "expected at most 3.14, or 6.42e+05",
+    ),
     # what is not there yet
     "an open box": (
         3, [SPHERE], {"box": Box([16] * 3, open=["x"]), "fluid": Fluid(collision=NoCollision())},
@@ -425,6 +458,10 @@ def test_a_case_with_wrong_bodies_is_refused(name: str) -> None:
     with pytest.raises(CaseError) as error:
         case_of(d, bodies, **parts)
     assert str(error.value) == expected
+
+
+def test_the_longest_path_is_that_of_the_engine() -> None:
+    assert pytest.approx(LONGEST_PATH) == PARTNERS_HOLD - LISTS_HOLD
 
 
 WIDE = {"box": Box([30, 30])}

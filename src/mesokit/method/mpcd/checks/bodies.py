@@ -5,6 +5,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from mesokit.case.case import Case
 from mesokit.case.component import name_of, one_of, show, tag_of
 from mesokit.geometry.shape_protocol import Movable, closed_axes
@@ -22,6 +24,8 @@ LEAST_MASS = 10.0  # particles of the fluid
 LEAST_NEARBY = 5.0  # particles that take a counter-force
 ROOM = 4.0  # cells from a body to its own image
 RESERVED = re.compile(r"all|bodies|solutes|fluid(-\d+)?")  # names of other particles
+LONGEST_PATH = 0.35  # cells in a timestep: the engine's lists of gaps hold so far
+MOST_SWING = math.pi  # radians of a trap in a timestep
 THIN_BODY = 2.0  # cells across, below which flow around it is not resolved
 RADII = ("radius", "half_length")
 SIZES = ("radius", "half_length", "length", "size", "parts")  # keys that say how large one is
@@ -39,6 +43,7 @@ def bodies(case: Case) -> Iterator[str]:
         yield from (f"{key}.{problem}" for problem in _vectors(case, kind))
         yield from (f"{key}.{problem}" for problem in _rows(case, kind))
         yield from (f"{key}.{problem}" for problem in _size(case, kind))
+        yield from (f"{key}.{problem}" for problem in _fast(case, kind))
         yield from (f"{key}.{problem}" for problem in _counter_force(case, kind))
         yield from (f"{key}.{problem}" for problem in _counter(case, kind))
         if kind.swim is not None and kind.swim.tumble_rate and not kind.tumbles:
@@ -237,6 +242,48 @@ def _said(kind: Body, radius: float) -> str:
         if value is not None and (key not in RADII or math.isclose(value, radius)):
             return key if key == "parts" else f"{key} = {show(value)}"
     return f"shape = {show(name_of(kind))}"
+
+
+def _fast(case: Case, kind: Body) -> Iterator[str]:
+    """Starts, forces and traps by which the surface goes too far in the first timestep."""
+    d, dt, kT = case.box.dimension, case.fluid.timestep, case.fluid.kT
+    solid, mass = kind.solid(d), kind.mass_in(d, case.fluid.density * case.fluid.mass)
+    moments = np.diag(solid.moments) * mass / solid.volume
+    inertia = float(moments[2] if d == 2 else moments.max())
+    free = [axis not in kind.fixed for axis in case.box.axes]
+    gaps = kind.interaction.depth > 0
+    least = f"expected at most {LONGEST_PATH:g}: a shorter fluid.timestep, or"
+    for name, arm in (("velocities", 1.0), ("spins", 0.0 if solid.ball else solid.radius)):
+        rows = getattr(kind.start, name)
+        for i, row in enumerate(() if rows is None or isinstance(rows, str) else rows, start=1):
+            path = math.hypot(*row) * arm * dt
+            if path > LONGEST_PATH and gaps:
+                yield (
+                    f"start.{name}[#{i}] = {show(row)}: it moves by {path:.3g} cells in a "
+                    f"timestep; {least} slower"
+                )
+    force = np.array(kind.force or 0.0) * (1.0 if kind.frame == "body" else free)
+    turn = kind.torque if isinstance(kind.torque, tuple) else (kind.torque or 0.0,)
+    for name, size, per in (
+        ("force", float(np.linalg.norm(force)), mass),
+        ("torque", math.hypot(*turn), inertia / solid.radius),
+    ):
+        path = size / per * dt**2
+        fixed = name == "torque" and "orientation" in kind.fixed
+        if path > LONGEST_PATH and gaps and not fixed:
+            yield (
+                f"{name} = {show(getattr(kind, name))}: in the first timestep the surface gets "
+                f"to {path:.3g} cells in a timestep; {least} weaker"
+            )
+    stiff = (("k", mass), ("angular", float(moments[2]))) if kind.trap is not None else ()
+    for name, per in stiff:
+        k = getattr(kind.trap, name)
+        swing = math.sqrt(k * kT / per) * dt
+        if swing > MOST_SWING:
+            yield (
+                f"trap.{name} = {show(k)}: too stiff, it swings by {swing:.3g} rad in a timestep; "
+                f"expected at most {MOST_SWING:.3g}, or {k * (MOST_SWING / swing) ** 2:.3g}"
+            )
 
 
 def _counter_force(case: Case, kind: Body) -> Iterator[str]:
