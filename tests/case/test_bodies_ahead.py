@@ -8,11 +8,13 @@ import pytest
 
 from mesokit import (
     SRD,
+    ATPlusA,
     Box,
     Case,
     CaseError,
     Disk,
     Fluid,
+    MaxwellBoltzmann,
     NoCollision,
     Plates,
     Run,
@@ -23,14 +25,18 @@ from mesokit import (
 from mesokit.case.describe.explain import explain
 from mesokit.method.mpcd.body.capsule import CapsuleBody
 from mesokit.method.mpcd.body.disk import DiskBody
-from mesokit.method.mpcd.body.protocol import BodyTrap, GapPotential
+from mesokit.method.mpcd.body.ellipse import EllipseBody
+from mesokit.method.mpcd.body.protocol import BodyTrap, GapPotential, Squirming
 from mesokit.method.mpcd.body.sphere import SphereBody
+from mesokit.method.mpcd.body.spheroid import SpheroidBody
 from mesokit.method.mpcd.body.union import UnionBody
 from mesokit.method.mpcd.derived import derive, summary
 from mesokit.method.mpcd.engine.cuda.refused import refused
+from mesokit.method.mpcd.expected.bodies import followed
 from mesokit.method.mpcd.method import METHOD
 from mesokit.method.mpcd.observe.body_correlation import BodyCorrelation
 
+HELD = {"thermostat": MaxwellBoltzmann()}
 DENSE = {"density": 10, "collision": SRDPlusA()}
 
 
@@ -114,6 +120,14 @@ WARNED = {
         [20, 20], [DiskBody(radius=3, fixed=["orientation"], torque=1)], {},
         "bodies[#1].torque = 1: the orientation is fixed, so that it turns nothing",
     ),
+    "fast for sound": (
+        [20, 20], [DiskBody(radius=1, swim=Squirming(B1=0.6))], {}, "bodies[#1]: expected to move "
+        "at Mach number 0.3: above 0.2 the fluid is compressible; a smaller B1",
+    ),
+    "fast for momentum": (
+        [60, 60], [DiskBody(radius=8, swim=Squirming(B1=0.2))], {}, "bodies[#1]: expected to move "
+        "at Reynolds number 1.3: above 1 inertia changes its flow and speed; a smaller B1",
+    ),
     "crowded": (
         [12, 12], [DiskBody(radius=3, number=2)], {}, "bodies: two of them reach 6.5 from centre "
         "to centre, more than half of the box of 12: of the images of another, only the nearest "
@@ -131,7 +145,55 @@ WARNED = {
 def test_a_warning(name):
     size, bodies, fluid, expected = WARNED[name]
     more = {"timestep": 0.3} if name == "fast" else {}
-    assert warnings_of(size, *bodies, **fluid, **more) == [expected]
+    assert warnings_of(size, *bodies, **HELD | fluid | more) == [expected]
+
+
+@pytest.mark.parametrize("body", [
+    DiskBody(radius=3, swim=Squirming(B1=0.1)), DiskBody(radius=3, torque=1),
+    DiskBody(radius=3, force=[1, 0], counter_force=True),
+])  # fmt: skip
+def test_bodies_that_move_the_fluid_heat_it(body):
+    [line] = warnings_of([20, 20], body)
+    assert line.startswith("no thermostat: bodies that swim, or that forces move, heat the fluid")
+    assert warnings_of([20, 20], body, **HELD) == []
+    assert warnings_of([20, 20], body, collision=ATPlusA()) == []
+
+
+def test_what_is_expected_of_each_kind_has_rows():
+    """A squirmer, and a sphere that a force draws."""
+    spheres = (
+        SphereBody(radius=3, name="swims", swim=Squirming(B1=-0.03)),
+        SphereBody(radius=2, name="drawn", force=[0, 4, 3], counter_force=True),
+    )
+    case = case_of([30] * 3, *spheres)
+    rows = {name: (value, word) for name, value, word in summary(case).rows}
+    known = theory.transport("srd+a", 3, density=10, timestep=0.1, angle=130)
+    nu, mobility = known.viscosity, 1 / (6 * math.pi * 10 * known.viscosity * 2)
+    assert rows["speed of swims"] == (
+        "0.02 a/tau",
+        f"estimate, of one alone; Reynolds number {0.06 / nu:.3g}",
+    )
+    assert rows["speed of drawn"][0] == f"{5 * mobility:.4g} a/tau"
+    assert rows["diffusion of drawn"] == (
+        f"{mobility:.4g} a^2/tau",
+        f"estimate, of one alone; R^2/D = {4 / mobility:.3g} tau",
+    )
+
+
+@pytest.mark.parametrize(("d", "body"), [
+    (3, SpheroidBody(half_length=3, radius=2.999)), (3, CapsuleBody(length=6.001, radius=3)),
+])  # fmt: skip
+def test_nearly_round_bodies_diffuse_as_spheres(d, body):
+    def diffusion(body):
+        return followed(case_of([30] * d, body), "test").roughly().diffusion
+
+    assert diffusion(body) == pytest.approx(diffusion(SphereBody(radius=3)), rel=0.01)
+
+
+def test_an_ellipse_swims_by_its_aspect():
+    ellipse = EllipseBody(size=[8, 4], swim=Squirming(B1=0.3))
+    found = followed(case_of([30, 30], ellipse), "test").roughly()
+    assert found.speed == pytest.approx(0.2) and math.isnan(found.diffusion)
 
 
 HOLD = {"trap": BodyTrap(k=1)}
@@ -150,11 +212,12 @@ HOLD = {"trap": BodyTrap(k=1)}
     ],
 )
 def test_no_warning(body):
-    assert warnings_of([20, 20], body) == []
+    assert warnings_of([20, 20], body, **HELD) == []
 
 
 def test_a_force_that_walls_take_is_no_warning():
-    assert warnings_of([20, 20], DiskBody(radius=3, force=[1, 0]), walls=[Plates("y")]) == []
+    body = DiskBody(radius=3, force=[1, 0])
+    assert warnings_of([20, 20], body, walls=[Plates("y")], **HELD) == []
 
 
 @pytest.mark.parametrize(("d", "name"), [(2, "disk"), (3, "sphere")])

@@ -15,6 +15,7 @@ from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.body.protocol import named
 from mesokit.method.mpcd.body.substeps import needed_substeps
 from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.method.mpcd.expected.bodies import followed
 from mesokit.method.mpcd.expected.heating import heating
 from mesokit.method.mpcd.expected.molecules import longest_relaxation
 from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
@@ -191,6 +192,19 @@ def body_rows(case: Case) -> list[Row]:
         share = kind.number * solid.volume / free_volume(case)
         radius = f"radius {solid.radius:.4g} a, mass {mass:.4g}, volume fraction {share:.3g}"
         rows.append((f"bodies {name}", f"{kind.number:,}".replace(",", " "), radius))
+        rows += _rough_rows(case, name)
+    return rows
+
+
+def _rough_rows(case: Case, name: str) -> list[Row]:
+    """What theory expects of one body of a kind alone."""
+    found, rows = followed(case, "check", name).roughly(), []
+    if found.speed > 0:
+        said = f"estimate, of one alone; Reynolds number {found.reynolds:.3g}"
+        rows.append((f"speed of {name}", number(found.speed, "a/tau"), said))
+    if math.isfinite(found.diffusion):
+        said = f"estimate, of one alone; R^2/D = {found.time:.3g} tau"
+        rows.append((f"diffusion of {name}", number(found.diffusion, "a^2/tau"), said))
     return rows
 
 

@@ -17,8 +17,10 @@ from mesokit.case.warnings import run_warnings
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import slit_of, solids_of
 from mesokit.method.mpcd.body.inertia import pieces
+from mesokit.method.mpcd.body.protocol import named
 from mesokit.method.mpcd.checks.bodies import THIN_BODY
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.bodies import followed
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
 from mesokit.method.mpcd.expected.molecules import (
     FAST,
@@ -33,6 +35,8 @@ from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solids
 SLIPPERY = 0.03  # slip length in cells
 RADIANS = 0.01  # an angle of no less may have been meant in radians
+FAST_BODY = 0.2  # speeds of sound
+INERTIAL = 1.0  # Reynolds number of the speed and the radius
 LONG_STRIDE = 0.25  # radii that a body flies in a timestep
 TURBULENT = 2000  # Reynolds number of a pipe, of the mean velocity and the diameter
 SHOCK = 2.0  # speeds of sound at which images may move; those of 8 do not follow theory
@@ -195,18 +199,32 @@ def _body_warnings(case: Case, numbers: Derived) -> Iterator[str]:
     yield from _images_of_bodies(case)
     yield from _turning_bodies(case, numbers)
     yield from _pushed_bodies(case)
+    yield from _fast_bodies(case)
+    stirred = any(kind.swim is not None or any(_moved(case, kind)) for kind in case.bodies)
+    if stirred and fluid.collision.acts and not setting.isothermal(case):
+        yield (
+            "no thermostat: bodies that swim, or that forces move, heat the fluid for ever; use "
+            "fluid.thermostat.rule = 'maxwell-boltzmann', or fluid.collision.rule = 'at+a'"
+        )
 
 
 def _idle(case: Case, kind: Any) -> Iterator[str]:
     """A force or torque on what is fixed."""
-    free = [axis not in kind.fixed for axis in case.box.axes]
-    force = np.array(kind.force or 0.0)
-    acts = np.any(free) if kind.frame == "body" else np.any(force * free)
-    if force.any() and not acts and not kind.balanced:
+    by_force, by_torque = _moved(case, kind)
+    if np.any(kind.force or 0.0) and not by_force:
         yield f"force = {show(kind.force)}: it acts along fixed axes alone, and moves nothing"
-    shell = kind.counter is not None and kind.counter.shell
-    if np.any(kind.torque or 0.0) and "orientation" in kind.fixed and not shell:
+    if np.any(kind.torque or 0.0) and not by_torque:
         yield f"torque = {show(kind.torque)}: the orientation is fixed, so that it turns nothing"
+
+
+def _moved(case: Case, kind: Any) -> tuple[bool, bool]:
+    """Whether a force, and whether a torque, moves a body or the fluid."""
+    free = [axis not in kind.fixed for axis in case.box.axes]
+    force, counter = np.array(kind.force or 0.0), kind.counter
+    acts = force.any() and (np.any(free) if kind.frame == "body" else np.any(force * free))
+    turns = "orientation" not in kind.fixed or (counter is not None and counter.shell > 0)
+    by_force = bool(acts or (force.any() and kind.balanced))
+    return by_force, bool(np.any(kind.torque or 0.0) and turns)
 
 
 def _images_of_bodies(case: Case) -> Iterator[str]:
@@ -256,6 +274,25 @@ def _pushed_bodies(case: Case) -> Iterator[str]:
             f"bodies: together they are pushed along {' and '.join(along)}, and nothing holds the "
             "fluid: the whole box speeds up for ever; use walls, or counter_force = true"
         )
+
+
+def _fast_bodies(case: Case) -> Iterator[str]:
+    """Bodies beside whose speed that of sound is not large, or that of spreading momentum."""
+    for i, (name, kind) in enumerate(named(case.bodies), start=1):
+        found = followed(case, "check", name).roughly()
+        less = "B1" if kind.swim is not None else "force"
+        known = setting.solvent(case)
+        mach = found.speed / (known.sound_speed if known else setting.sound_speed(case))
+        if _above(mach, FAST_BODY):
+            yield (
+                f"bodies[#{i}]: expected to move at Mach number {mach:.2g}: above {FAST_BODY:g} "
+                f"the fluid is compressible; a smaller {less}"
+            )
+        if _above(found.reynolds, INERTIAL):
+            yield (
+                f"bodies[#{i}]: expected to move at Reynolds number {found.reynolds:.2g}: above "
+                f"{INERTIAL:g} inertia changes its flow and speed; a smaller {less}"
+            )
 
 
 def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:

@@ -26,5 +26,9 @@ class EllipseBody(Body):
     def half_axis(self) -> float:
         return 0.5 * self.size[0]
 
+    @property
+    def aspect(self) -> float:
+        return self.size[0] / self.size[1]
+
     def region(self) -> Region:
         return ellipsoid((0.0, 0.0), (1.0, 0.0), 0.5 * self.size[0], 0.5 * self.size[1])

@@ -320,6 +320,11 @@ class Body(ABC):
         """From the centre of a squirmer to an end of its axis."""
         return 1.0
 
+    @property
+    def aspect(self) -> float:
+        """Of a squirmer: its axis over its width."""
+        return 1.0
+
     def solid(self, dimension: int) -> Solid:
         """Volume, inertia and parts about the centre of mass, in 2D or 3D."""
         return _solid(self.region(), dimension == 2)

@@ -21,5 +21,9 @@ class SpheroidBody(Body):
     def half_axis(self) -> float:
         return self.half_length
 
+    @property
+    def aspect(self) -> float:
+        return self.half_length / self.radius
+
     def region(self) -> Region:
         return ellipsoid((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), self.half_length, self.radius)

@@ -19,7 +19,19 @@ from mesokit.method.mpcd.groups import fluid_mass_density
 
 Floats = NDArray[np.float64]
 KIND_OF_BODY = "which kind of bodies: name or number, from 1"
+WIDE = 0.45  # of the side of a box: radius of a disk up to which its friction is known
+SLENDER = 20.0  # longest rods whose friction is known, in diameters
 ROUNDING = 1e-12  # of a moment of inertia
+
+
+class Estimates(NamedTuple):
+    """Speed of swimming or of a force, diffusion coefficient, Reynolds number of that speed and the
+    radius, and the time R^2/D."""
+
+    speed: float
+    diffusion: float
+    reynolds: float
+    time: float
 
 
 class Followed(NamedTuple):
@@ -160,6 +172,46 @@ class Followed(NamedTuple):
         speed, fraction = theory.squirmer_speed(kind.swim.B1, d), kind.solid(d).volume / length**d
         share = self.asymmetric_share
         return theory.squirmer_speed_in_box(speed, fraction, slip / radius, share), why
+
+    # Estimates before a run: of one alone in the box, or in a wide fluid where that is not known.
+
+    def roughly(self) -> Estimates:
+        """Speed, diffusion and what follows from them; nan where theory has no number."""
+        d, coefficients = self.case.box.dimension, setting.solvent(self.case)
+        if coefficients is None or self.kind.surface != "no-slip":
+            return Estimates(math.nan, math.nan, math.nan, math.nan)
+        solid, viscosity = self.kind.solid(d), coefficients.viscosity
+        mobility = self._rough_mobility(viscosity * fluid_mass_density(self.case))
+        free = [axis not in self.kind.fixed for axis in self.case.box.axes]
+        force = np.array(self.kind.force or 0.0) * (1.0 if self.kind.frame == "body" else free)
+        speed = float(np.linalg.norm(force)) * mobility if force.any() else 0.0
+        if self.kind.swim is not None:
+            speed += abs(theory.squirmer_speed(self.kind.swim.B1, d, self.kind.aspect))
+        if not any(free) or (self.kind.trap is not None and self.kind.trap.k):
+            speed = 0.0
+        diffusion = float(self.case.fluid.kT) * mobility
+        return Estimates(
+            speed, diffusion, speed * solid.radius / viscosity, solid.radius**2 / diffusion
+        )
+
+    def _rough_mobility(self, viscosity: float) -> float:
+        """Mean velocity over force of a disk in this box, or of a sphere, spheroid or rod."""
+        case, kind, solid = self.case, self.kind, self.kind.solid(self.case.box.dimension)
+        if case.box.dimension == 2:
+            side = math.sqrt(case.box.volume)
+            if not solid.ball or solid.radius > WIDE * side:
+                return math.nan
+            return 1.0 / theory.disk_friction_in_square(solid.radius, side, viscosity)
+        if solid.ball:
+            return 1.0 / (6.0 * math.pi * viscosity * solid.radius)
+        if (half := getattr(kind, "half_length", None)) is not None:
+            friction = theory.ellipsoid_friction((half, kind.radius, kind.radius), viscosity)
+            return float(np.mean(1.0 / friction.translation))
+        length, radius = getattr(kind, "length", math.nan), getattr(kind, "radius", math.nan)
+        if not 1.0 <= 0.5 * length / radius <= SLENDER:
+            return math.nan
+        rod = theory.capsule_friction(length, 2.0 * radius, viscosity)
+        return (1.0 / rod.along + 2.0 / rod.across) / 3.0
 
     @property
     def asymmetric_share(self) -> float:
