@@ -94,7 +94,7 @@ def _inside(parts: list[Part], places: Floats, depth: float = INSIDE) -> NDArray
     return found
 
 
-def pieces(solid: Solid, dimension: int) -> int:
+def separate_pieces(solid: Solid, dimension: int) -> int:
     """In how many separate pieces a body is; gaps narrower than two samples do not count."""
     from scipy import ndimage
 
