@@ -128,6 +128,11 @@ WARNED = {
         [60, 60], [DiskBody(radius=8, swim=Squirming(B1=0.2))], {}, "bodies[#1]: expected to move "
         "at Reynolds number 1.3: above 1 inertia changes its flow and speed; a smaller B1",
     ),
+    "stiff": (
+        [20, 20], [DiskBody(radius=3, mass=400, trap=BodyTrap(k=160_000))], {},
+        "bodies[#1].trap.k = 160000: it swings by 2 rad in a timestep; above 0.5 its velocity is "
+        "too hot: a weaker trap or a shorter timestep",
+    ),
     "crowded": (
         [12, 12], [DiskBody(radius=3, number=2)], {}, "bodies: two of them reach 6.5 from centre "
         "to centre, more than half of the box of 12: of the images of another, only the nearest "

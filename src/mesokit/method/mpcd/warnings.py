@@ -36,6 +36,7 @@ COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solid
 SLIPPERY = 0.03  # slip length in cells
 RADIANS = 0.01  # an angle of no less may have been meant in radians
 FAST_BODY = 0.2  # speeds of sound
+SWING = 0.5  # radians of a trap in a timestep; at 2 the velocity is 1.3 times as hot
 INERTIAL = 1.0  # Reynolds number of the speed and the radius
 LONG_STRIDE = 0.25  # radii that a body flies in a timestep
 TURBULENT = 2000  # Reynolds number of a pipe, of the mean velocity and the diameter
@@ -178,6 +179,12 @@ def _body_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 "fluid between them"
             )
         yield from (f"{key}.{note}" for note in _idle(case, kind))
+        swing = math.sqrt(kind.trap.k * fluid.kT / mass) * fluid.timestep if kind.trap else 0.0
+        if _above(swing, SWING):
+            yield (
+                f"{key}.trap.k = {kind.trap.k:g}: it swings by {swing:.2g} rad in a timestep; "
+                f"above {SWING:g} its velocity is too hot: a weaker trap or a shorter timestep"
+            )
         if _above(THIN_BODY, solid.thinnest, 3):
             yield (
                 f"{key}: it is {solid.thinnest:.3g} cells thick; below {THIN_BODY:g} the flow "
