@@ -197,13 +197,15 @@ def body_rows(case: Case) -> list[Row]:
 
 
 def _rough_rows(case: Case, name: str) -> list[Row]:
-    """What theory expects of one body of a kind alone."""
-    found, rows = followed(case, "check", name).roughly(), []
+    """What theory expects of one body of a kind alone, or of disks as in a lattice."""
+    kind, rows = followed(case, "check", name), []
+    found = kind.roughly()
+    of = "a lattice" if kind.number > 1 and case.box.dimension == 2 else "one alone"
     if found.speed > 0:
-        said = f"estimate, of one alone; Reynolds number {found.reynolds:.3g}"
+        said = f"estimate, of {of}; Reynolds number {found.reynolds:.3g}"
         rows.append((f"speed of {name}", number(found.speed, "a/tau"), said))
     if math.isfinite(found.diffusion):
-        said = f"estimate, of one alone; R^2/D = {found.time:.3g} tau"
+        said = f"estimate, of {of}; R^2/D = {found.time:.3g} tau"
         rows.append((f"diffusion of {name}", number(found.diffusion, "a^2/tau"), said))
     return rows
 

@@ -173,7 +173,7 @@ class Followed(NamedTuple):
         share = self.asymmetric_share
         return theory.squirmer_speed_in_box(speed, fraction, slip / radius, share), why
 
-    # Estimates before a run: of one alone in the box, or in a wide fluid where that is not known.
+    # Estimates before a run: in 3D of one alone, in 2D of a lattice.
 
     def roughly(self) -> Estimates:
         """Speed, diffusion and what follows from them; nan where theory has no number."""
@@ -195,10 +195,10 @@ class Followed(NamedTuple):
         )
 
     def _rough_mobility(self, viscosity: float) -> float:
-        """Mean velocity over force of a disk in this box, or of a sphere, spheroid or rod."""
+        """Mean velocity over force of disks as in a lattice, or of one sphere, spheroid or rod."""
         case, kind, solid = self.case, self.kind, self.kind.solid(self.case.box.dimension)
         if case.box.dimension == 2:
-            side = math.sqrt(case.box.volume)
+            side = math.sqrt(case.box.volume / self.number)
             if not solid.ball or solid.radius > WIDE * side:
                 return math.nan
             return 1.0 / theory.disk_friction_in_square(solid.radius, side, viscosity)
