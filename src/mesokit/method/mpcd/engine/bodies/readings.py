@@ -79,6 +79,7 @@ class BodyReadings:
         self.names = [one.name for one in named(self.case.bodies)]
         self.kinds: NDArray[np.int64] = self.state_of.kind
         self.masses: Floats = masses_of(self.case)[self.kinds]
+        self._listed: Floats | None = None  # places and orientations of which there are lists
 
     @property
     def number(self) -> int:
@@ -188,13 +189,16 @@ class BodyReadings:
                 rows[self.kinds == kind, HOME : HOME + d] = given.trap.centre
         rows[:, TURN : TURN + 4] = rows[:, state.END_TURN : state.END_TURN + 4] = turns
         rows[:, VELOCITY : VELOCITY + d], rows[:, SPIN : SPIN + 3] = velocities, spins
-        rows[:, PATH] = MAKE_LISTS
+        rows[:, PATH], self._listed = MAKE_LISTS, None
 
     def inside(self, places: Floats, part: float = 0.0) -> NDArray[np.bool_]:
         """Which of places (n, d) are in a body, or nearer to one than this part of its range."""
         found, zero = np.zeros(len(places), bool), self.memory.physics.zero
-        places = np.ascontiguousarray(places)
-        mark_inside(ALONE, self.memory.box, self.state_of, zero, places, part, found)
+        here = self.state_of.rows[:, PLACE : TURN + 4].copy()
+        anew = self._listed is None or not np.array_equal(here, self._listed)
+        asked = np.ascontiguousarray(places), part, anew
+        mark_inside(ALONE, self.memory.box, self.state_of, zero, asked, found)
+        self._listed = here
         return found
 
     def state(self) -> dict[str, NDArray[Any]]:
@@ -209,7 +213,7 @@ class BodyReadings:
         for name, (first, number) in KEPT.items():
             rows[:, first : first + number] = given[f"body_{name}"]
         rows[:, state.END_TURN : state.END_TURN + 4] = rows[:, TURN : TURN + 4]
-        rows[:, PATH] = MAKE_LISTS
+        rows[:, PATH], self._listed = MAKE_LISTS, None
         self.state_of.counters[:] = self.state_of.faults[:] = 0
 
     def check(self) -> None:
@@ -244,9 +248,12 @@ class BodyReadings:
 
 
 @kernel
-def mark_inside(worker, box, bodies, zero, places, part, found):
-    """Note which places are in a body, or nearer to one than a part of its range."""
-    list_by_cells(worker, box, bodies, zero)
+def mark_inside(worker, box, bodies, zero, asked, found):
+    """Note which places are in a body, or nearer to one than a part of its range; `asked` has both,
+    and whether lists are to be made."""
+    places, part, anew = asked
+    if anew:
+        list_by_cells(worker, box, bodies, zero)
     reach = part * farthest_gap(bodies)
     for n in range(len(places)):
         r = row(places, n, zero)
