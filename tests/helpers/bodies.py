@@ -1,5 +1,7 @@
 """Bodies of all shapes that move in small fluids."""
 
+import numpy as np
+
 from mesokit import Rectangle, Sphere
 from mesokit.method.mpcd.body.capsule import CapsuleBody
 from mesokit.method.mpcd.body.cuboid import CuboidBody
@@ -42,3 +44,20 @@ SOME = {
     3: (body("sphere", 3), body("spheroid", 3, density=20), body("union", 3)),
 }
 ROOM = {2: (26, 24), 3: (18, 17, 16)}
+
+
+def blocks(samples, number=30):
+    """Means of blocks of samples in time."""
+    whole = np.asarray(samples)[: len(samples) // number * number]
+    return whole.reshape(number, -1).mean(axis=1)
+
+
+def pressures_in_time(fluid):
+    """Parts of the pressure of a 2D fluid (300, parts), in each third step after the first 50."""
+    fluid.advance(50)
+    pressures = []
+    for _ in range(300):
+        fluid.advance(2)
+        fluid.advance(1, measure=["stress"])
+        pressures.append([-np.trace(part) / 2 for part in fluid.stress.values()])
+    return pressures

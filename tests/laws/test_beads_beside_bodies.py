@@ -8,7 +8,7 @@ from mesokit.errors import RunError
 from mesokit.method.mpcd.body.protocol import BodyStart
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
-from tests.helpers.bodies import PLANAR, ROOM, SOME, body
+from tests.helpers.bodies import PLANAR, ROOM, SOME, blocks, body, pressures_in_time
 from tests.helpers.small_fluids import assert_same, make_case, make_fluid, mean
 
 HELD = {"timestep": 0.1, "thermostat": MaxwellBoltzmann(), "measures": ("stress",)}
@@ -25,11 +25,6 @@ def gaps(fluid):
     away = fluid.solutes.places[:, None] - fluid.bodies.places()[None]
     away -= np.rint(away / fluid.box) * fluid.box
     return np.hypot(away[..., 0], away[..., 1]) - 2.0
-
-
-def blocks(samples, number=30):
-    """Means of blocks of samples in time."""
-    return np.reshape(samples, (number, -1)).mean(axis=1)
 
 
 def test_beads_and_bodies_of_all_shapes_keep_momentum():
@@ -87,12 +82,7 @@ def test_beads_add_their_pressure_to_that_of_the_fluid():
     """Each bead adds kT over the area that bodies leave: what these give beads is in the stress."""
     disks = [body("disk", 2, number=6, virtual="none")]
     fluid = make_fluid((24, 24), bodies=disks, solutes=free(1500), **HELD)
-    fluid.advance(50)
-    pressures = []
-    for _ in range(300):
-        fluid.advance(2)
-        fluid.advance(1, measure=["stress"])
-        pressures.append([-np.trace(part) / 2 for part in fluid.stress.values()])
+    pressures = pressures_in_time(fluid)
     found = mean(blocks(np.sum(pressures, axis=1)))
     # an area is left to beads as if disks ended where exp(-U/kT) has half of its rise
     reach = 2.0 + 2 * RANGE

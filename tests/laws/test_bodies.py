@@ -7,7 +7,7 @@ from mesokit import BodyMotion, MaxwellBoltzmann, Plates, SRDPlusA
 from mesokit.method.mpcd.body.protocol import BodyStart, BodyTrap, CounterForce, Squirming
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
-from tests.helpers.bodies import ROOM, SHAPES, SIZES, SOME, body
+from tests.helpers.bodies import ROOM, SHAPES, SIZES, SOME, blocks, body, pressures_in_time
 from tests.helpers.small_fluids import assert_same, make_case, make_fluid, mean
 
 FAST = {"timestep": 0.1}
@@ -51,11 +51,6 @@ def in_thermal_units(fluid, steps, every=2):
     return np.array(translation), np.array(rotation)
 
 
-def blocks(samples, number=30):
-    """Means of blocks of samples in time."""
-    return samples[: len(samples) // number * number].reshape(number, -1).mean(axis=1)
-
-
 @pytest.mark.parametrize("name", ["disk", "union"])
 @pytest.mark.parametrize("virtual", ["fill", "none"])
 def test_bodies_have_the_temperature_of_the_fluid(name, virtual):
@@ -93,12 +88,7 @@ def test_the_pressure_around_bodies_is_that_of_the_free_fluid(name, virtual):
     round. The bodies themselves add a thousandth."""
     some = body(name, 2, number=6, virtual=virtual)
     fluid = make_fluid((24, 24), bodies=[some], **HELD)
-    fluid.advance(50)
-    pressures = []
-    for _ in range(300):
-        fluid.advance(2)
-        fluid.advance(1, measure=["stress"])
-        pressures.append([-np.trace(part) / 2 for part in fluid.stress.values()])
+    pressures = pressures_in_time(fluid)
     kinetic, collisional = np.mean(pressures, axis=0)
     found = mean(blocks(np.sum(pressures, axis=1)))
     assert found.agrees(10 + 6 / 576, systematic=0.005), found
