@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Sequence
 
+from mesokit.processes.end import leave_at_once
 from mesokit.processes.streams import outlive_readers
 
 
@@ -27,6 +28,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = getattr(stop, "status", 130)
     with contextlib.suppress(OSError):  # a full disk, reported where it can be: in the run's folder
         sys.stderr.flush()
+    if arguments is None and status > 128:
+        leave_at_once(status)
     raise SystemExit(status)
 
 

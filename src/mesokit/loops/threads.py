@@ -89,6 +89,13 @@ class Threads:
         arguments = all_packed(arguments)
         if self.size > 1 and hasattr(kernel, "signatures"):
             kernel.compile(tuple(map(typeof, (self._own, *arguments))))
+        if self.size == 1:
+            kernel(self._own, *arguments)
+        else:
+            self._call_all(kernel, arguments)
+
+    def _call_all(self, kernel: Any, arguments: tuple) -> None:
+        """Call a compiled kernel in every thread; no signal ends this before all are done."""
         for inbox in self._inboxes:
             inbox.put((kernel, arguments))
         kernel(self._own, *arguments)

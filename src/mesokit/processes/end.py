@@ -1,5 +1,7 @@
 """End of all ranks after an error in one: one rank prints the reason, and none is left running."""
 
+import atexit
+import contextlib
 import os
 import sys
 import threading
@@ -71,4 +73,16 @@ def leave_orderly(status: int) -> None:
     late.daemon = True
     late.start()
     MPI.Finalize()
+    os._exit(status)
+
+
+def leave_at_once(status: int) -> None:
+    """End this process after a signal, which may have come anywhere.
+
+    Nothing is freed that another thread, or a compiler that was interrupted, may still use.
+    """
+    atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError):  # a full disk, or a reader that has gone
+            stream.flush()
     os._exit(status)
