@@ -217,9 +217,9 @@ def diffusion(page: Page) -> None:
     )
     rows = []
     for name, body, side, rule, length in (
-        ("disk R = 2", DiskBody(radius=2), 20, "at+a", 6e4),
-        ("sphere R = 2", SphereBody(radius=2), 12, "at+a", 1.2e4),
-        ("sphere R = 2", SphereBody(radius=2), 12, "srd", 1.2e4),
+        ("disk R = 2", DiskBody(radius=2), 20, "at+a", 6e5),
+        ("sphere R = 2", SphereBody(radius=2), 12, "at+a", 1e5),
+        ("sphere R = 2", SphereBody(radius=2), 12, "srd", 1e5),
     ):
         d, lag = body.dimensions[0], min(400, steps(length) // 8)
         case = case_of(

@@ -140,8 +140,8 @@ def swimming(page: Page) -> None:
     )
     rows = []
     for d, rule, length in (
-        (2, "at+a", 3e4), (2, "srd+a", 3e4), (3, "at+a", 6e3), (3, "srd+a", 6e3),
-        (3, "srd", 6e3),
+        (2, "at+a", 3e5), (2, "srd+a", 3e5), (3, "at+a", 4e4), (3, "srd+a", 4e4),
+        (3, "srd", 4e4),
     ):  # fmt: skip
         kind, side = (DiskBody, 30) if d == 2 else (SphereBody, 16)
         body = kind(radius=3, swim=Squirming(B1=0.15))
@@ -286,7 +286,7 @@ def einstein(page: Page) -> None:
     )
     rows, empty = [], (1.0, 0.0)
     for number in (0, 3, 6):
-        length = 4e4
+        length = 2e5
         if number:
             body = DiskBody(radius=radius, number=number)
             case = case_of(body, side, "at+a", length, Stress(), shear_rate=rate)
@@ -401,7 +401,7 @@ def long_bodies(page: Page) -> None:
             fixed=("orientation",),
         )  # fmt: skip
         files, note = ran(page, f"long-{name}-drawn".replace(" ", ""),
-                          case_of(drawn, side, "at+a", 4e3, BodyDrift()))  # fmt: skip
+                          case_of(drawn, side, "at+a", 2e4, BodyDrift()))  # fmt: skip
         x, y, z = (found(files["body-drift"], f"mobility along {axis}") for axis in "xyz")
         rows.append(renamed(x, f"{name}, along: mobility", note, float(ways[0])))
         rows.append(Comparison(
@@ -410,7 +410,7 @@ def long_bodies(page: Page) -> None:
         ))  # fmt: skip
         turned = kind(**keys, start=start, torque=(0.0, 0.0, 120.0), hinge=(0.0, 0.0, 1.0))
         files, note = ran(page, f"long-{name}-turned".replace(" ", ""),
-                          case_of(turned, side, "at+a", 4e3, BodyDrift()))  # fmt: skip
+                          case_of(turned, side, "at+a", 2e4, BodyDrift()))  # fmt: skip
         c = found(files["body-drift"], "rotational mobility about z")
         rows.append(renamed(c, f"{name}, end over end: mobility", note, float(1 / turning)))
         for c in rows[-3:]:

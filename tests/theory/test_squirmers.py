@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from mesokit.theory import (
     squirmer_flow,
@@ -123,6 +124,67 @@ def test_speed_among_images(d, points):
     mean = squirmer_flow(cell, axis, 1.0, 1.0, 0.5)[..., 0].mean()
     speed = squirmer_speed(1.0, d)
     assert squirmer_speed_in_box(speed, fraction) == pytest.approx(speed + pushed - mean, rel=1e-3)
+
+
+def fourier_flow(places, axis, side, B1, B2):
+    """Flow of a lattice of squirmers of R = 1 as a sum over waves, in the frame without flux.
+
+    Of a dipole and a stresslet with the density of a narrow Gaussian, of which `wide` is undone.
+    """
+    d, wide = len(axis), 0.25
+    number = np.arange(-(n := int(5 / wide * side / (2 * np.pi)) + 1), n + 1)
+    k = 2 * np.pi / side * np.stack(np.meshgrid(*[number] * d), -1).reshape(-1, d)
+    square = (k**2).sum(1)
+    k = k[(np.arange(len(k)) > len(k) // 2) & (square < (5 / wide) ** 2)]  # one of k and -k
+    square = (k**2).sum(1)[:, None]
+    speed, along = squirmer_speed(B1, d), (k @ axis)[:, None]
+    dipole = -2 * np.pi * speed * k * along / square
+    stretch = axis * along - k / d  # S.k
+    stresslet = 4j * np.pi * B2 * (stretch - k * (along**2 / square - 1 / d)) / square
+    stresslet *= 1 + square * (wide**2 / 2 - (1 / 4 if d == 2 else 1 / 6))
+    waves = np.exp(-square * wide**2 / 2) * (dipole + stresslet) / side**d
+    volume = np.pi if d == 2 else 4 * np.pi / 3
+    back = d / (d - 1) * volume / side**d * speed * axis
+    return 2 * (np.exp(1j * places @ k.T) @ waves).real - back
+
+
+@pytest.mark.parametrize(("d", "side"), [(2, 14.0), (3, 12.0)])
+def test_flow_among_images_is_a_mean_over_directions(d, side):
+    """By Fourier's sum, over directions whose mean has no part of the symmetry of the lattice."""
+    if d == 2:
+        turns = [Rotation.from_euler("z", 0.125 * np.pi * i).as_matrix()[:2, :2] for i in range(4)]
+    else:
+        turns = Rotation.create_group("I").as_matrix()
+    places = 1.5 * nearby(d)[:1] / np.linalg.norm(nearby(d)[0])
+    axis = AXES[d]
+    found = [fourier_flow(places @ t.T, t @ axis, side, 0.2, 0.4) @ t for t in turns]
+    wide, known = (squirmer_flow(places, axis, 1.0, 0.2, 0.4, volume=v) for v in (None, side**d))
+    assert np.mean(found, axis=0) == pytest.approx(known, abs=0.02 * abs(known - wide).max())
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@given(B1=strength, B2=strength, slip=st.floats(0, 1), share=st.floats(0, 1))
+def test_slip_of_the_flow(d, B1, B2, slip, share):
+    """u_theta at the surface is that of the swimming surface, and b times the shear stress.
+
+    Where stress is not symmetric, the part c of it is that of the slope of u_theta alone.
+    """
+    e = AXES[d]
+
+    def flow(places):
+        return squirmer_flow(places, e, RADIUS, B1, B2, slip / RADIUS, collisional_share=share)
+
+    normal = nearby(d) / np.linalg.norm(nearby(d), axis=1)[:, None]
+    toward = (normal @ e)[:, None] * normal - e
+    surface = RADIUS * normal * (1 + 2 * H)
+    slopes, _ = differences(flow, surface)  # d_j u_i
+    ahead = np.einsum("ni,nij,nj->n", toward, slopes, normal)
+    whole = ahead + np.einsum("ni,nij,nj->n", normal, slopes, toward)
+    stress = (1 - share) * whole + share * ahead
+    own = surface_velocity(normal, e, B1, B2)
+    body = flow(np.zeros((1, d)))
+    slid = ((flow(surface) - body - own) * toward).sum(1)
+    assert slid == pytest.approx(slip * stress, abs=0.02)
 
 
 def test_inertia_slows_pullers():

@@ -5,6 +5,8 @@ from e: B1 sin theta + B2 sin theta cos theta in 3D, B1 sin theta + B2 sin 2 the
 beta = B2/B1 it is a pusher for beta < 0, a puller for beta > 0.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -75,7 +77,16 @@ def squirmer_speed_inertial(speed: float, beta: float, reynolds: float) -> float
     return speed * (1 - 0.15 * beta * reynolds)
 
 
-def squirmer_flow(places: ArrayLike, axis: ArrayLike, radius: float, B1: float, B2: float) -> Array:
+def squirmer_flow(
+    places: ArrayLike,
+    axis: ArrayLike,
+    radius: float,
+    B1: float,
+    B2: float,
+    slip: float = 0.0,
+    volume: float | None = None,
+    collisional_share: float = 0.0,
+) -> Array:
     """Velocity of the fluid about a squirming sphere or disk, in the frame of the fluid at rest.
 
     With e.r = r cos theta: in 3D
@@ -84,12 +95,17 @@ def squirmer_flow(places: ArrayLike, axis: ArrayLike, radius: float, B1: float, 
     in 2D
         u_r = (1/2) B1 (R/r)^2 cos + B2 ((R/r)^3 - R/r) cos 2 theta,
         u_theta = (1/2) B1 (R/r)^2 sin + B2 (R/r)^3 sin 2 theta.
-    Inside it is the velocity of the body.
+    Inside it is the velocity of the body. A slip of length b divides B1 by 1 + (2 - c) b/R and B2
+    by 1 + (d + 2 - c) b/R. The images in a periodic cube or square of volume V add a flow that is
+        -phi U e + 4 pi B2 R^(d - 1) (e (e.r) - r/d)/((d + 2) V)
+    to first order in phi, the volume of the body over V, as a mean over directions of e.
 
     Parameters: `places` (..., d) from the centre of the body, in cells; `axis` (d,) e, of any
-    length; `radius` R; `B1`, `B2` in cells per unit of time. Raises ValueError for shapes that do
-    not fit and a radius not above 0. Source: J. R. Blake, J. Fluid Mech. 46, 199 (1971); in 2D
-    derived here. Valid without inertia, far from all else.
+    length; `radius` R; `B1`, `B2` in cells per unit of time; `slip` b/R; `volume` V (no images
+    unless said); `collisional_share` c of the viscosity that does not conserve angular momentum (0
+    for rules +a). Raises ValueError for shapes that do not fit and values out of range. Source: J.
+    R. Blake, J. Fluid Mech. 46, 199 (1971); 2D, slip and images: derived here, in docs/theory.md.
+    Valid without inertia; in a box where the volume flux is zero.
 
     >>> squirmer_flow([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0]], [1, 0, 0], 1.0, B1=1.0, B2=0.0).round(4)
     array([[ 0.0833,  0.    ,  0.    ],
@@ -98,25 +114,32 @@ def squirmer_flow(places: ArrayLike, axis: ArrayLike, radius: float, B1: float, 
     r, e = np.asarray(places, float), np.asarray(axis, float)
     if e.shape not in ((2,), (3,)) or r.shape[-1:] != e.shape:
         raise ValueError(f"axis of {e.shape}, places of {r.shape}: expected (d,) and (..., d)")
-    positive(radius=radius)
-    e = e / np.linalg.norm(e)
+    positive(radius=radius, **({} if volume is None else {"volume": volume}))
+    not_negative(slip=slip, collisional_share=collisional_share)
+    e, d = e / np.linalg.norm(e), len(e)
+    B1 = B1 / (1 + (2 - collisional_share) * slip)
+    B2 = B2 / (1 + (d + 2 - collisional_share) * slip)
     distance = np.maximum(np.linalg.norm(r, axis=-1, keepdims=True), 1e-300)
     out = r / distance
     cosine = (out @ e)[..., None]
     toward = cosine * out - e  # sin theta times the unit vector of theta
     q = radius / np.maximum(distance, radius)
-    if len(e) == 3:
-        speed = squirmer_speed(B1)
+    speed = squirmer_speed(B1, d)
+    if d == 3:
         dipole = speed * q**3 / 2
         stretch = B2 * (q**4 - q**2) * (3 * cosine**2 - 1) / 2
         whirl = B2 * q**4 * cosine
         along = 2 * dipole * cosine + stretch
     else:
-        speed = squirmer_speed(B1, 2)
         dipole = speed * q**2
         along = dipole * cosine + B2 * (q**3 - q) * (2 * cosine**2 - 1)
         whirl = 2 * B2 * q**3 * cosine
     flow = along * out + (dipole + whirl) * toward
+    if volume is not None:
+        back = (math.pi if d == 2 else 4 * math.pi / 3) * radius**d / volume * speed
+        strain = 4 * math.pi * B2 * radius ** (d - 1) / ((d + 2) * volume)
+        flow += strain * ((r @ e)[..., None] * e - r / d) - back * e
+        speed -= back
     return np.asarray(np.where(distance < radius, speed * e, flow))
 
 
