@@ -23,7 +23,8 @@ CAPACITY = 16  # blocks: a map has many bins
 RADII = 3.0  # of a body, how far the grid reaches unless said
 FINER = 4  # places along each side of a bin, over which theory is a mean
 COMPONENTS = {2: ("along", "across"), 3: ("along", "across", "around")}
-UNBOUNDED = "approximate: of one swimmer alone in a fluid without bounds"
+UNBOUNDED = "approximate: of one swimmer alone in a fluid without bounds or inertia"
+IN_BOX = "without inertia; a mean over directions in the box"
 
 
 @component
@@ -88,6 +89,14 @@ class BodyFlowAccumulator(BlockAccumulator):
             np.arange(lowest, half + 1) * self.side,
         ]
         self.bins = tuple(len(edges) - 1 for edges in self.edges)
+        # Slip and images are in the theory of one swimmer in a periodic cube or square.
+        self.box: tuple[float, ...] = ()
+        self.why, self.bounds = UNBOUNDED, "without bounds"
+        if (known := self.of.alone_in_a_cube()) is not None:
+            slip, why = self.of.slip
+            volume = float(np.prod(case.box.size))
+            self.box = slip / known[0], volume, self.of.asymmetric_share
+            self.why, self.bounds = f"{why}; {IN_BOX}", "in this box"
         self.lengths = periodic_lengths(case)
         self.rows = self.of.rows.start + spread_ids(observable.bodies, self.of.number)
         self.places = self.axes = np.zeros((0, self.dimension))  # of these bodies, now
@@ -150,7 +159,7 @@ class BodyFlowAccumulator(BlockAccumulator):
             self.comparisons(velocity, expected),
             label=f"velocity around {self.of.name}",
             expected=expected,
-            theory="" if expected is None else "one squirmer without bounds",
+            theory="" if expected is None else f"one squirmer {self.bounds}",
             extra={
                 "radius": self.radius if self.of.ball else np.nan,
                 "speed": float(self.own.mean()) if self.own.count else np.nan,
@@ -168,7 +177,7 @@ class BodyFlowAccumulator(BlockAccumulator):
         along, across = ((edges[:-1, None] + self.side * offsets).ravel() for edges in self.edges)
         places = np.zeros((len(along), len(across), d))
         places[..., 0], places[..., 1] = along[:, None], across
-        flow = theory.squirmer_flow(places, np.eye(d)[0], self.radius, swim.B1, swim.B2)
+        flow = theory.squirmer_flow(places, np.eye(d)[0], self.radius, swim.B1, swim.B2, *self.box)
         weight = (np.hypot(along[:, None], across) > self.radius) * (1.0 if d == 2 else across)
 
         def means(values: Array) -> Array:
@@ -195,7 +204,7 @@ class BodyFlowAccumulator(BlockAccumulator):
             velocity.weights.reshape(len(velocity.weights), -1),
         )
         value, error = flat.total(weight.ravel())
-        yield Comparison("flow over theory", value, error, 1.0, note=UNBOUNDED)
+        yield Comparison("flow over theory", value, error, 1.0, note=self.why)
 
 
 def _times(vectors: Array, other: Array) -> Array:
