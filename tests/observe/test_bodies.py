@@ -159,6 +159,18 @@ def test_the_slope_is_the_diffusion_coefficient(of):
     assert abs(found.measured - expected) < 4 * found.error < expected
 
 
+def test_the_slope_of_places_is_that_after_the_longest_wave_of_the_box():
+    """Its flow brings more than half of the diffusion of a disk, so that earlier slopes are low."""
+    memory = 14**2 / (4 * np.pi**2 * setting.solvent(moving_disks()).viscosity)
+    lag = round(6 * memory / STEP)
+    result = walked(BodyDisplacement(max_lag=lag), 3 * lag, 0.1)
+    fitted = result.x["time"][np.isfinite(result.fit)]
+    assert fitted.min() >= 2 * memory and fitted.max() == pytest.approx(lag * STEP, rel=0.2)
+    assert result.comparisons[0].note == ""
+    [short] = walked(BodyDisplacement(max_lag=lag // 4), 3 * lag, 0.1).comparisons
+    assert f"flows in this box last {2 * memory:.3g} tau" in short.note
+
+
 def test_the_direction_is_forgotten_at_the_rate_of_rotational_diffusion():
     result = walked(BodyCorrelation(of="orientation", max_lag=80), 2000, 0.2)
     [found] = result.comparisons

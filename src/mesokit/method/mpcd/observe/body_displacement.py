@@ -7,6 +7,7 @@ import numpy as np
 
 from mesokit.case.case import Case
 from mesokit.case.component import component, option, param, tag
+from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.bodies import KIND_OF_BODY
 from mesokit.method.mpcd.observe.shared.bodies_in_time import BodiesInTime, free_axes
 from mesokit.observe.mean_square_displacement import late_slope
@@ -15,6 +16,7 @@ from mesokit.seam.observable import Observable, accumulator_of
 from mesokit.seam.result import Array, Result, joined
 
 GROWS = "approximate: grows with the lag: no straight line yet, a larger max_lag"
+LIVES = 2.0  # of the longest wave of the box, after which displacements are nearly diffusive
 
 
 @component
@@ -64,10 +66,13 @@ class BodyDisplacementAccumulator(BodiesInTime):
         label, of = "mean square displacement", self.of.diffusion
         if angles:
             label, of = "mean square angular displacement", self.of.rotational_diffusion
-        slope, found = late_slope(time, moved, self._diffusive_from()), []
+        first, last = self._diffusive_from(), float(time[-1])
+        slope, found = late_slope(time, moved, min(first, last / 2)), []
         if slope is not None:
             scale, (known, note) = 1 / (2 * len(self.axes)), of()
+            short = f"approximate: flows in this box last {first:.3g} tau: a larger max_lag"
             note = joined(GROWS if slope.growth and not slope.straight else "", note)
+            note = joined(short if first > last / 2 else "", note)
             what = "rotational diffusion coefficient" if angles else "diffusion coefficient"
             unit = "1/tau" if angles else "a^2/tau"
             number = slope.value * scale, slope.error * scale
@@ -85,9 +90,18 @@ class BodyDisplacementAccumulator(BodiesInTime):
 
     def _diffusive_from(self) -> float:
         """The lag from which on it is a straight line: five times in which a velocity decays, by
-        theory of the diffusion coefficient; 0 without one."""
+        theory of the diffusion coefficient, and of places `LIVES` of the longest wave."""
         angles = self.observable.of == "angles"
         known, _ = self.of.rotational_diffusion() if angles else self.of.diffusion()
         moved = self.of.spin_square() if angles else self.of.velocity_square()
         decay = 5 * known / moved
-        return decay if math.isfinite(decay) else 0.0
+        times = [decay if math.isfinite(decay) else 0.0]
+        if not angles and (coefficients := setting.solvent(self.case)) is not None:
+            times.append(LIVES / (coefficients.viscosity * self._longest_wave() ** 2))
+        return max(times)
+
+    def _longest_wave(self) -> float:
+        """The wave number of the flow that lives longest: between walls half a wave."""
+        size = self.case.box.size
+        between = [math.pi / size[axis] for axis in setting.closed_axes(self.case)]
+        return max(between) if between else 2 * math.pi / max(size)
