@@ -246,8 +246,8 @@ def test_equipartition_of_bodies_that_are_not_free():
 @pytest.mark.parametrize(
     ("collision", "virtual", "slip", "source"),
     [
-        (ATPlusA(), "fill", 0.159, "balls that turn"),
-        (SRDPlusA(angle=90), "fill", 0.159, "balls that turn"),
+        (ATPlusA(), "fill", 0.075, "balls that turn"),
+        (SRDPlusA(angle=90), "fill", 0.075, "balls that turn"),
         (ATPlusA(), "none", 1.32, "plates in SRD"),
         (SRD(angle=130), "fill", 0.22, "plates in SRD"),
     ],
