@@ -12,6 +12,7 @@ from mesokit.case.case import Case
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.bodies import KIND_OF_BODY, followed
+from mesokit.method.mpcd.groups import fluid_mass_density
 from mesokit.method.mpcd.observe.shared.shells import nearest, periodic_lengths
 from mesokit.seam.engine import Some, Terms
 from mesokit.seam.estimate import Estimate, of_ratio
@@ -24,7 +25,7 @@ RADII = 3.0  # of a body, how far the grid reaches unless said
 FINER = 4  # places along each side of a bin, over which theory is a mean
 COMPONENTS = {2: ("along", "across"), 3: ("along", "across", "around")}
 UNBOUNDED = "approximate: of one swimmer alone in a fluid without bounds or inertia"
-IN_BOX = "without inertia; a mean over directions in the box"
+SLOW = 0.1  # Reynolds number below which nothing is said of inertia
 
 
 @component
@@ -93,10 +94,14 @@ class BodyFlowAccumulator(BlockAccumulator):
         self.box: tuple[float, ...] = ()
         self.why, self.bounds = UNBOUNDED, "without bounds"
         if (known := self.of.alone_in_a_cube()) is not None:
-            slip, why = self.of.slip
-            volume = float(np.prod(case.box.size))
-            self.box = slip / known[0], volume, self.of.asymmetric_share
-            self.why, self.bounds = f"{why}; {IN_BOX}", "in this box"
+            radius, side, viscosity = known
+            slip, self.why = self.of.slip
+            self.box = slip / radius, side**self.dimension, self.of.asymmetric_share
+            self.bounds = "in this box"
+            reynolds = self._speed() * radius * fluid_mass_density(case) / viscosity
+            if reynolds > SLOW:
+                inertia = f"approximate: without inertia, whose Re is {reynolds:.2g}"
+                self.why = f"{inertia}; {self.why}"
         self.lengths = periodic_lengths(case)
         self.rows = self.of.rows.start + spread_ids(observable.bodies, self.of.number)
         self.places = self.axes = np.zeros((0, self.dimension))  # of these bodies, now
@@ -166,6 +171,11 @@ class BodyFlowAccumulator(BlockAccumulator):
                 "side": self.side,
             },
         )
+
+    def _speed(self) -> float:
+        """The larger of the two velocities of a swimming surface."""
+        swim = self.of.kind.swim
+        return 0.0 if swim is None else max(abs(swim.B1), abs(swim.B2))
 
     def expected(self) -> Array | None:
         """The flow around a squirmer, a mean over the part of each bin that is fluid."""
