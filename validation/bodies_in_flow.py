@@ -403,7 +403,7 @@ def long_bodies(page: Page) -> None:
             fixed=("orientation",),
         )  # fmt: skip
         files, note = ran(page, f"long-{name}-drawn".replace(" ", ""),
-                          case_of(drawn, side, "at+a", 2e4, BodyDrift()))  # fmt: skip
+                          case_of(drawn, side, "at+a", 8e3, BodyDrift()))  # fmt: skip
         x, y, z = (found(files["body-drift"], f"mobility along {axis}") for axis in "xyz")
         rows.append(renamed(x, f"{name}, along: mobility", note, float(ways[0])))
         rows.append(Comparison(
@@ -412,7 +412,7 @@ def long_bodies(page: Page) -> None:
         ))  # fmt: skip
         turned = kind(**keys, start=start, torque=(0.0, 0.0, 120.0), hinge=(0.0, 0.0, 1.0))
         files, note = ran(page, f"long-{name}-turned".replace(" ", ""),
-                          case_of(turned, side, "at+a", 2e4, BodyDrift()))  # fmt: skip
+                          case_of(turned, side, "at+a", 8e3, BodyDrift()))  # fmt: skip
         c = found(files["body-drift"], "rotational mobility about z")
         rows.append(renamed(c, f"{name}, end over end: mobility", note, float(1 / turning)))
         for c in rows[-3:]:

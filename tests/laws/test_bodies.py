@@ -140,6 +140,23 @@ def test_threads_and_restarts_change_no_bit(kind):
     assert abs(half["body_place"] - alone.state()["body_place"]).max() > 1e-3
 
 
+@pytest.mark.parametrize(
+    ("more", "along"),
+    [
+        ({"shear_rate": 0.05}, [1]),  # where images slide, a drift along y would gain for ever
+        ({"bodies": [body("union", 2, fixed=("orientation",))]}, [0, 1]),
+        ({"bodies": [body("disk", 2, fixed=("x",))]}, [1]),
+        ({}, [0, 1]),
+    ],
+)
+def test_a_start_is_at_rest_as_a_whole(more, along):
+    """Along all axes on which nothing from outside acts."""
+    fluid = make_fluid(ROOM[2], **{"bodies": SOME[2]} | more, **FAST)
+    momentum = fluid.totals()[1]
+    assert abs(momentum[along]).max() < 1e-9
+    assert abs(fluid.bodies.masses @ fluid.bodies.velocities)[along].min() > 0.1
+
+
 def test_lists_under_shear_hold_for_a_body_that_the_flow_does_not_carry():
     """A heavy disk at rest, cut by the border at which images slide .1 cells a step.
 
