@@ -220,7 +220,7 @@ def diffusion(page: Page) -> None:
     rows = []
     for name, body, side, rule, length in (
         ("disk R = 2", DiskBody(radius=2), 20, "at+a", 6e5),
-        ("sphere R = 2", SphereBody(radius=2), 12, "at+a", 4e5),
+        ("sphere R = 2", SphereBody(radius=2), 12, "at+a", 1e5),
         ("sphere R = 2", SphereBody(radius=2), 12, "srd", 1e5),
     ):
         d = body.dimensions[0]

@@ -243,8 +243,7 @@ def shear(page: Page) -> None:
         "fluid: the mean of Jeffery's angular velocity over the steady distribution of angles "
         "stands as theory. Re is rate R^2/nu, with the half length of an ellipse; its first "
         "effect is to slow the turning, and more so a longer body. Each ellipse makes some ten "
-        "turns, so that error bars may be too small. The ellipse 9 x 3, at Re 1.4, turns more "
-        "slowly than the law; which of the two is why was not tried."
+        "turns, so that error bars may be too small."
     )
     rows = []
     for name, body, side, length, rate in (
