@@ -219,6 +219,11 @@ CASES = {
         2, [DiskBody(radius=3, fixed=["x", "z"])], {},
         "bodies[#1].fixed = ['x', 'z']: a 2D box has only 'x' and 'y'",
     ),
+    "a place fixed along a shear flow alone": (
+        2, [DiskBody(radius=3, fixed=["x"])], {"box": Box([20, 20], shear_rate=0.1)},
+        "bodies[#1].fixed = ['x']: under box.shear_rate 'x' needs 'y', as images above and below "
+        "slide along x",
+    ),
     "a hinge in 2D": (
         2, [DiskBody(radius=3, hinge=[0, 0, 1])], {},
         "bodies[#1].hinge = [0, 0, 1]: only in 3D; in 2D all bodies turn about z alone",

@@ -157,6 +157,16 @@ def test_a_start_is_at_rest_as_a_whole(more, along):
     assert abs(fluid.bodies.masses @ fluid.bodies.velocities)[along].min() > 0.1
 
 
+def test_what_is_fixed_does_not_go_with_a_shear_flow():
+    """Near the end of the box, where the flow is fastest."""
+    there = BodyStart(rule="given", positions=[[13, 21]])
+    still = body("disk", 2, start=there, fixed=("x", "y", "orientation"))
+    fluid = make_fluid(ROOM[2], bodies=[still], shear_rate=0.05, **FAST | SHEARED)
+    fluid.advance(20)
+    assert fluid.bodies.places().tolist() == [[13, 21]]
+    assert fluid.bodies.angles.tolist() == [[0, 0, 0]]
+
+
 def test_lists_under_shear_hold_for_a_body_that_the_flow_does_not_carry():
     """A heavy disk at rest, cut by the border at which images slide .1 cells a step.
 

@@ -152,6 +152,11 @@ def _vectors(case: Case, kind: Body) -> Iterator[str]:
         yield f"torque = {show(kind.torque)}: expected 3 numbers in 3D"
     if d == 2 and "z" in kind.fixed:
         yield f"fixed = {show(kind.fixed)}: a 2D box has only 'x' and 'y'"
+    if case.box.sheared and "x" in kind.fixed and "y" not in kind.fixed:
+        yield (
+            f"fixed = {show(kind.fixed)}: under box.shear_rate 'x' needs 'y', as images above and "
+            "below slide along x"
+        )
     if kind.hinge is not None and d == 2:
         yield f"hinge = {show(kind.hinge)}: only in 3D; in 2D all bodies turn about z alone"
     elif kind.hinge is not None and len(kind.hinge) != 3:

@@ -151,19 +151,21 @@ def first_velocities(
     random = Draws(case.run.seed, INITIAL_BODIES, np.arange(len(places)), 2**21)
     v = random.normals(d) * np.sqrt(kT / mass)[:, None]
     spins, own = np.zeros((len(places), 3)), random.normals(3)
+    shear = case.box.first_rate if case.box.sheared else 0.0
+    v[:, 0] += shear * (places[:, 1] - 0.5 * case.box.size[1])
     done = 0
     for kind, m in zip(case.bodies, masses_of(case), strict=True):
         rows, solid = slice(done, done + kind.number), kind.solid(d)
         for k, name in enumerate("xyz"[:d]):
             if name in kind.fixed:
                 v[rows, k] = 0.0
-        inertia = m / solid.volume * solid.moments
+        inertia, turning = m / solid.volume * solid.moments, np.array([0.0, 0.0, -0.5 * shear])
+        if kind.hinge is not None:
+            h = np.array(kind.hinge) / np.linalg.norm(kind.hinge)
+            turning = (h @ turning) * h
         if "orientation" not in kind.fixed:
-            spins[rows] = _thermal_spins(kind, inertia, own[rows], turns[rows], kT, d)
+            spins[rows] = _thermal_spins(kind, inertia, own[rows], turns[rows], kT, d) + turning
         done += kind.number
-    if case.box.sheared:
-        v[:, 0] += case.box.first_rate * (places[:, 1] - 0.5 * case.box.size[1])
-        spins[:, 2] -= 0.5 * case.box.first_rate
     done = 0
     for kind, one in zip(case.bodies, known, strict=True):
         rows = slice(done, done + kind.number)
