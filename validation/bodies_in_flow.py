@@ -377,7 +377,9 @@ def long_bodies(page: Page) -> None:
         "images of the box (the Fourier sum of their force) and the first order of the slip "
         f"length {slip:g}. That of the capsule is the same with Hasimoto's first term "
         "2.8373/(6 pi eta L) alone and without slip, which would add some per cent. Turning end "
-        "over end is about a hinge; neither images nor slip are in its theory."
+        "over end is about a hinge; neither images nor slip are in its theory. The Reynolds number "
+        "of the half length is about 1, where inertia slows a sphere by 6 % (two spheres, above): "
+        "that it does so here was not tried with a weaker force."
     )
     eta, rows = viscosity("at+a", 3), []
     bodies = (
