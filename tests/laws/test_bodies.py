@@ -140,10 +140,14 @@ def test_threads_and_restarts_change_no_bit(kind):
     assert abs(half["body_place"] - alone.state()["body_place"]).max() > 1e-3
 
 
+SHOT = BodyStart(rule="given", positions=[[9, 9]], velocities=[[0.1, 0.2]])
+
+
 @pytest.mark.parametrize(
     ("more", "along"),
     [
         ({"shear_rate": 0.05}, [1]),  # where images slide, a drift along y would gain for ever
+        ({"shear_rate": 0.05, "bodies": [body("disk", 2, start=SHOT)]}, [1]),
         ({"bodies": [body("union", 2, fixed=("orientation",))]}, [0, 1]),
         ({"bodies": [body("disk", 2, fixed=("x",))]}, [1]),
         ({}, [0, 1]),

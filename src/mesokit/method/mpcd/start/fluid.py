@@ -208,16 +208,18 @@ def _begin_bodies(engine: Any, fluid_is_drawn: bool) -> Floats:
     """Give the bodies their first state; the drift (d,) to take off the fluid, so that the whole is
     at rest, or goes with the shear flow: else more would leave through one end than through the
     other, where images slide, and gain velocity for ever."""
-    case, bodies = engine.numbers.case, engine.bodies
+    case, bodies, fluid_mass = engine.numbers.case, engine.bodies, engine.numbers.total_mass
     first = first_bodies(case)
     v, drift = first.velocities, np.zeros(engine.numbers.dimension)
+    own = v.copy()
+    own[:, 0] -= case.box.first_rate * (first.places[:, 1] - 0.5 * engine.numbers.box[1])
+    held = {axis for kind in case.bodies for axis in kind.fixed}  # where momentum is not kept
     if fluid_is_drawn and not first.moving:
-        own = v.copy()
-        own[:, 0] -= case.box.first_rate * (first.places[:, 1] - 0.5 * engine.numbers.box[1])
-        drift = bodies.masses @ own / (bodies.masses.sum() + engine.numbers.total_mass)
-        held = {axis for kind in case.bodies for axis in kind.fixed}  # where momentum is not kept
+        drift = bodies.masses @ own / (bodies.masses.sum() + fluid_mass)
         drift[[axis in held for axis in AXES[: len(drift)]]] = 0.0
         v -= drift
+    elif fluid_is_drawn and case.box.sheared and "y" not in held:  # of the fluid alone
+        drift[1] = bodies.masses @ own[:, 1] / fluid_mass
     bodies.begin(first.places, first.turns, v, first.spins)
     return drift
 
