@@ -660,18 +660,18 @@ def flow(page: Page) -> None:
             if name == "weak":
                 met(page, what, rows[-1], 5)
     page.table(rows)
-    fig, axes = plt.subplots(1, 2, figsize=(8.4, 4), sharey=True)
-    for ax, field, title in zip(axes, (mean, known), ("measured", "theory"), strict=True):
+    fig, axes = plt.subplots(1, 3, figsize=(9, 4), width_ratios=[1, 1, 0.05])
+    for ax, field, title in zip(axes[:2], (mean, known), ("measured", "theory"), strict=True):
         free = r > radius
         speed = np.where(free, np.hypot(*field), np.nan)
         image = ax.imshow(speed.T, origin="lower", extent=[-half, half] * 2, cmap="viridis",
-                          vmin=0, vmax=0.06)  # fmt: skip
+                          vmin=0, vmax=0.045)  # fmt: skip
         u, w = (np.where(free, f, 0.0) for f in field)
         ax.streamplot(middle, middle, u.T, w.T, color="white", density=0.9, linewidth=0.7)
         ax.add_patch(plt.Circle((0, 0), radius, color=GREY))
         ax.set(title=title, xlabel="along the axis  [$a$]", xlim=(-half, half), ylim=(-half, half))
     axes[0].set_ylabel("across  [$a$]")
-    fig.colorbar(image, ax=axes[1], label="speed  [$a/\\tau$]")
+    fig.colorbar(image, cax=axes[2], label="speed  [$a/\\tau$]")
     page.figure(fig, "Mean flow about the weak puller in 2D, in the axes of its body; right: "
                 "theory with slip and images. Colour: speed.", "_flow")  # fmt: skip
 

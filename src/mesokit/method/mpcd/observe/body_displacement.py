@@ -66,7 +66,7 @@ class BodyDisplacementAccumulator(BodiesInTime):
         label, of = "mean square displacement", self.of.diffusion
         if angles:
             label, of = "mean square angular displacement", self.of.rotational_diffusion
-        first, last = self._diffusive_from(), float(time[-1])
+        first, last = self._diffusive_from(), float(time.max(initial=0.0))
         slope, found = late_slope(time, moved, min(first, last / 2)), []
         if slope is not None:
             scale, (known, note) = 1 / (2 * len(self.axes)), of()
