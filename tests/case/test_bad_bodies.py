@@ -219,6 +219,16 @@ CASES = {
         2, [DiskBody(radius=3, fixed=["x", "z"])], {},
         "bodies[#1].fixed = ['x', 'z']: a 2D box has only 'x' and 'y'",
     ),
+    "a velocity along what is fixed": (
+        2, [DiskBody(radius=3, fixed=["y"], start=BodyStart(
+            rule="given", positions=[[9, 9]], velocities=[[0.1, 0.2]]))], {},
+        "bodies[#1].start.velocities[#1] = [0.1, 0.2]: expected 0 along y, as fixed",
+    ),
+    "a spin across the hinge": (
+        3, [SphereBody(radius=3, hinge=[0, 1, 1], start=BodyStart(
+            rule="given", positions=[[9, 9, 9]], spins=[[0.3, 0, 0.5]]))], {},
+        "bodies[#1].start.spins[#1] = [0.3, 0, 0.5]: expected a multiple of hinge = [0, 1, 1]",
+    ),
     "a place fixed along a shear flow alone": (
         2, [DiskBody(radius=3, fixed=["x"])], {"box": Box([20, 20], shear_rate=0.1)},
         "bodies[#1].fixed = ['x']: under box.shear_rate 'x' needs 'y', as images above and below "

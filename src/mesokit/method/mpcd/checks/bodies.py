@@ -108,6 +108,20 @@ def _beads(case: Case, solutes: Solutes) -> Iterator[str]:
             )
 
 
+def _known_motion(case: Case, kind: Body) -> Iterator[str]:
+    """Given velocities along what is fixed, and spins about other axes than the hinge."""
+    velocities, spins, hinge = kind.start.velocities, kind.start.spins, kind.hinge or ()
+    rows = () if velocities is None or isinstance(velocities, str) else velocities
+    for i, row in enumerate(rows, start=1):
+        for axis, speed in zip(case.box.axes, row, strict=False):
+            if speed and axis in kind.fixed:
+                yield f"start.velocities[#{i}] = {show(row)}: expected 0 along {axis}, as fixed"
+    rows = () if spins is None or isinstance(spins, str) else spins
+    for i, row in enumerate(rows, start=1):
+        if len(row) == len(hinge) == 3 and np.linalg.norm(np.cross(row, hinge)) > 1e-9:
+            yield f"start.spins[#{i}] = {show(row)}: expected a multiple of hinge = {show(hinge)}"
+
+
 def _shape(case: Case, kind: Body) -> Iterator[str]:
     """A shape of this dimension, and its parts likewise."""
     from mesokit.geometry.shape import SHAPES
@@ -198,6 +212,7 @@ def _rows(case: Case, kind: Body) -> Iterator[str]:
                 yield f"start.{name}[#{i}] = {show(row)}: expected {what}"
     if given.spins is not None and "orientation" in kind.fixed:
         yield "start.spins: not with fixed = 'orientation', which never turns"
+    yield from _known_motion(case, kind)
     rows = () if given.positions is None or isinstance(given.positions, str) else given.positions
     for i, row in enumerate(rows, start=1):
         for axis, x, length in zip(case.box.axes, row, case.box.size, strict=True):

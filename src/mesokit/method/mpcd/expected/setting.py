@@ -158,15 +158,18 @@ def mass_density(case: Case) -> float:
 
 
 def carriers(case: Case) -> tuple[float, float]:
-    """Particles and beads per cell, and how many of these move as one: molecules count once.
+    """Particles and beads per cell, and how many of these move as one: molecules and bodies count
+    once.
 
     The latter is nan where beads of different molecules feel one another.
     """
     density, molecule, solutes = case.fluid.density, case.fluid.molecule, case.solutes
-    alone = density / (1 if molecule is None else molecule.length)
+    volume = free_volume(case)
+    moving = sum(kind.number for kind in case.bodies if not set(case.box.axes) <= set(kind.fixed))
+    alone = density / (1 if molecule is None else molecule.length) + moving / volume
+    density += moving / volume
     if solutes is None:
         return density, alone
-    volume = free_volume(case)
     wholes = sum(polymer.number for polymer in solutes.polymers) / volume
     if solutes.different_pairs or solutes.solvent_pair is not None:
         wholes = float("nan")
@@ -271,6 +274,13 @@ def stirred(case: Case) -> bool:
     )
 
 
+def held_along(case: Case, axis: str) -> bool:
+    """Whether places of bodies are fixed or trapped along an axis, and slow what flows there."""
+    return any(
+        axis in kind.fixed or (kind.trap is not None and kind.trap.k > 0) for kind in case.bodies
+    )
+
+
 def motion_besides(case: Case) -> str:
     """What moves beside thermal motion: "flow", "swimming", "drift"; "" at rest.
 
@@ -344,7 +354,7 @@ def flow(case: Case, component: int) -> Flow:
     if plates and not (box.sheared and plates.lower.rule == plates.upper.rule == "slip"):
         return _slit(case, plates, component)
     if box.sheared:
-        if case.fluid.force.acts:
+        if case.fluid.force.acts or held_along(case, "x"):
             return Flow("driven shear", 1, None)
         if component != 0:
             return rest

@@ -70,7 +70,8 @@ class BodyDisplacementAccumulator(BodiesInTime):
         slope, found = late_slope(time, moved, min(first, last / 2)), []
         if slope is not None:
             scale, (known, note) = 1 / (2 * len(self.axes)), of()
-            short = f"approximate: flows in this box last {first:.3g} tau: a larger max_lag"
+            enough = math.ceil(2 * first / self.case.fluid.timestep)
+            short = f"approximate: a lower bound at such short lags: max_lag = {enough} is enough"
             note = joined(GROWS if slope.growth and not slope.straight else "", note)
             note = joined(short if first > last / 2 else "", note)
             what = "rotational diffusion coefficient" if angles else "diffusion coefficient"

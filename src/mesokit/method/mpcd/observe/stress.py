@@ -20,6 +20,7 @@ from mesokit.seam.result import Array, Comparison, Result, joined
 
 PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
 ROUSE = "Rouse molecules, beads with the friction of free particles"
+CROWD = "approximate: bodies as an ideal gas"
 IN_SHEAR, OF_PART = "no theory of such a fluid in shear", "no theory of this part"
 # more kinetic stress than of molecular chaos at a mean free path of a tenth of a cell; measured in
 # docs/validation/viscosity_rules.md
@@ -215,6 +216,7 @@ class StressAccumulator(TensorAccumulator):
             note = shear_note(case) if np.isfinite(ideal) else IN_SHEAR
         elif ideal * self.flights_in_shear() > 0.5 * spread:
             note = "approximate: of a fluid at rest, to which shear adds its square"
+        note = joined(note, CROWD if sum(kind.number for kind in case.bodies) > 1 else "")
         yield Comparison("pressure", pressure, spread, ideal, UNIT[d], self.cautioned(note))
 
     def flights_in_shear(self) -> float:
