@@ -165,7 +165,7 @@ def carriers(case: Case) -> tuple[float, float]:
     """
     density, molecule, solutes = case.fluid.density, case.fluid.molecule, case.solutes
     volume = free_volume(case)
-    moving = sum(kind.number for kind in case.bodies if not set(case.box.axes) <= set(kind.fixed))
+    moving = moving_bodies(case)
     alone = density / (1 if molecule is None else molecule.length) + moving / volume
     density += moving / volume
     if solutes is None:
@@ -272,6 +272,11 @@ def stirred(case: Case) -> bool:
         kind.swim is not None or np.any(kind.force or 0.0) or np.any(kind.torque or 0.0)
         for kind in case.bodies
     )
+
+
+def moving_bodies(case: Case) -> int:
+    """Number of bodies whose place is not fixed along all axes."""
+    return sum(kind.number for kind in case.bodies if not set(case.box.axes) <= set(kind.fixed))
 
 
 def held_along(case: Case, axis: str) -> bool:

@@ -216,7 +216,8 @@ class StressAccumulator(TensorAccumulator):
             note = shear_note(case) if np.isfinite(ideal) else IN_SHEAR
         elif ideal * self.flights_in_shear() > 0.5 * spread:
             note = "approximate: of a fluid at rest, to which shear adds its square"
-        note = joined(note, CROWD if sum(kind.number for kind in case.bodies) > 1 else "")
+        crowded = np.isfinite(ideal) and setting.moving_bodies(case) > 1
+        note = joined(note, CROWD if crowded else "")
         yield Comparison("pressure", pressure, spread, ideal, UNIT[d], self.cautioned(note))
 
     def flights_in_shear(self) -> float:
