@@ -50,6 +50,7 @@ PARTS = 64.0  # of a cell: what is clear is kept in whole numbers of these
 FAR = np.uint8(LIST_REACH * PARTS)
 # Where scratch memory has how far surfaces go with one list, and how far images have slid.
 FARTHEST, ALLOWANCE, SLID = 250, 251, 252
+SEVERAL, NO_BODIES = -2, -2  # in the table of single bodies; as a list (see `list_of`)
 
 
 def kicks_fluid(bodies):
@@ -269,8 +270,7 @@ def put_on_list(bodies, cell, i):
     n = bodies.near_count[cell]
     if n == EVERY_BODY or (n > 0 and bodies.near[cell, n - 1] == i):
         return
-    is_ball = of_kind(bodies, i, state.IS_BALL) > 0.5
-    bodies.alone[cell] = i if n == 0 and is_ball else NO_BODY
+    bodies.alone[cell] = i if n == 0 else SEVERAL
     if n == MOST_NEAR_CELL:
         bodies.near_count[cell] = EVERY_BODY
     else:
@@ -326,21 +326,31 @@ def cube_of(bodies, box, r):
 
 @scalar
 def list_of(bodies, cell, reach):
-    """A cell, if its list has all bodies within reach of a place in it; else EVERY_BODY."""
-    holds = reach < LIST_REACH and bodies.near_count[cell] != EVERY_BODY
-    return cell if holds else np.int64(EVERY_BODY)
+    """The list that has all bodies within reach of a place in a cell.
+
+    It is the number of the cell; EVERY_BODY; NO_BODIES; or one below it for each body, where that
+    is alone, so that no list need be fetched.
+    """
+    one = np.int64(bodies.alone[cell])
+    if reach >= LIST_REACH or (one == SEVERAL and bodies.near_count[cell] == EVERY_BODY):
+        return np.int64(EVERY_BODY)
+    return np.int64(cell) if one == SEVERAL else NO_BODIES + NO_BODY - one
 
 
 @scalar
-def bodies_near(bodies, cell):
-    """How many bodies are on the list of a cell, or all where a list does not hold."""
-    return len(bodies.rows) if cell == EVERY_BODY else bodies.near_count[cell]
+def bodies_near(bodies, listed):
+    """How many bodies are on a list."""
+    if listed >= 0:
+        return np.int64(bodies.near_count[listed])
+    return len(bodies.rows) if listed == EVERY_BODY else np.int64(listed < NO_BODIES)
 
 
 @scalar
-def body_near(bodies, cell, n):
+def body_near(bodies, listed, n):
     """The nth of them."""
-    return np.int64(n) if cell == EVERY_BODY else np.int64(bodies.near[cell, n])
+    if listed >= 0:
+        return np.int64(bodies.near[listed, n])
+    return np.int64(n) if listed == EVERY_BODY else NO_BODIES + NO_BODY - listed
 
 
 @scalar

@@ -68,7 +68,7 @@ COUNT, HITS, SECOND_HITS, PUT_BACK, GAS_COUNT, STILL_HITTING, BATCHED = range(7)
 COUNTERS = 8
 CAUGHT, TOO_FAST = 4, 5  # what a fault may be, beside those of `embedded.state`
 SPEED, MILLIONTH = 3, 1e-6  # of a fault: where the speed of a body is, and in what
-ROWS = 21  # of scratch memory for flights, and for cells that wait for their gas
+ROWS = 27  # of scratch memory for flights, and for cells that wait for their gas
 WORK = 256  # floats of scratch memory of a thread
 
 
@@ -84,9 +84,9 @@ class MovingBodies(NamedTuple):
     the mean motion, else 0.
     grid: cells of the box, without shift; halves: cubes of half the size; cubes (threads, LANES):
     scratch memory; near_count (cells + 1,), near (cells + 1, MOST_NEAR_CELL): the bodies near each
-    cell; alone (cells + 1,): the ball that is the only body on its list, or NO_BODY; clear
-    (cubes + 1,): the distance that is clear around each cube. partner_count (bodies,), partners
-    (bodies, MOST_PARTNERS): other bodies that may come near.
+    cell; alone (cells + 1,): the only body on its list, NO_BODY or SEVERAL; clear (cubes + 1,): the
+    distance that is clear around each cube. partner_count (bodies,), partners (bodies,
+    MOST_PARTNERS): other bodies that may come near.
     values (threads, most, NEAR_COLUMNS), numbers (threads, most, NEAR_NUMBERS): particles near.
     sums (threads, bodies, SUMS): of the hits in hand; taken (threads, bodies, 6): impulses, in
     whole numbers. gas (threads, most, GAS_COLUMNS): virtual particles, of gas_mass, or all of a

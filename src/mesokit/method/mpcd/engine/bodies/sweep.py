@@ -17,6 +17,7 @@ from mesokit.method.mpcd.engine.bodies.near import (
     BEYOND,
     LIST_REACH,
     PARTS,
+    SEVERAL,
     bodies_near,
     body_near,
     box_at_start,
@@ -57,7 +58,7 @@ from mesokit.method.mpcd.engine.bodies.stress import take_near_flux
 from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
-from mesokit.method.mpcd.engine.cpu.physics import of_bodies
+from mesokit.method.mpcd.engine.cpu.physics import field_of, of_bodies
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.one import put_one
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, load_scratch, store_scratch
@@ -68,13 +69,15 @@ from mesokit.method.mpcd.engine.domains.messages.shared import shares
 from mesokit.method.mpcd.engine.embedded.near import note
 from mesokit.method.mpcd.engine.embedded.state import TOO_MANY
 from mesokit.method.mpcd.engine.where import where
+from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.streaming import halfway, vector
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 KEEP, RESTORE = 0, 1
 # Rows of the flights of candidates: their places, velocities and paths, and the ball near each.
 PLACE_OF, VELOCITY_OF, BALL_OF, BALL_VELOCITY_OF, RADIUS_OF, PATH_OF = 0, 3, 6, 9, 12, 13
+PASSES, MEETS, UNKNOWN = 0.0, 1.0, 2.0  # what is seen of a candidate and the ball near it
 WAITING = -1  # the cell of a particle that has not flown yet
 
 
@@ -146,12 +149,35 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
 
 
-@scalar
+@by_type
 def longest_flight(bodies, physics, r, v):
     """The longest path that a particle can fly in a timestep."""
-    a, time = vector(halfway(physics.field, r, v, physics.timestep), r), physics.timestep
-    path = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
-    return path + bodies.further
+    if field_of(physics, "field").instance_class is Zero:
+        return lambda bodies, physics, r, v: (
+            physics.timestep * math.sqrt(dot(v, v)) + bodies.further
+        )
+
+    def bent(bodies, physics, r, v):
+        a, time = vector(halfway(physics.field, r, v, physics.timestep), r), physics.timestep
+        path = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
+        return path + bodies.further
+
+    return bent
+
+
+@by_type
+def may_reach(bodies, physics, r, v, distance):
+    """Whether a particle can fly so far in a timestep."""
+    if field_of(physics, "field").instance_class is Zero:  # without a root
+
+        def straight(bodies, physics, r, v, distance):
+            left, time = max(distance - bodies.further, 0.0), physics.timestep
+            return not time * time * dot(v, v) < left * left
+
+        return straight
+    return lambda bodies, physics, r, v, distance: (
+        not longest_flight(bodies, physics, r, v) < distance
+    )
 
 
 @scalar
@@ -177,7 +203,7 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
     for i in range(LANES):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         clear = float(cubes[i]) * (1.0 / PARTS) - allowance
-        cubes[i] = np.int32(not longest_flight(bodies, physics, r, v) < clear)
+        cubes[i] = np.int32(may_reach(bodies, physics, r, v, clear))
         any_near |= cubes[i]
     # Compact the lanes of candidates to the front, again without branches.
     for i in range(count if any_near != 0 else 0):
@@ -207,13 +233,17 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
         flights[RADIUS_OF * SCRATCH_ROW + j] = passes_ball(box, flights, j, time, zero)
     # Exact test of the few others, by the bodies on their lists.
     for j in range(candidates):
-        if flights[RADIUS_OF * SCRATCH_ROW + j] == 0.0:
+        if flights[RADIUS_OF * SCRATCH_ROW + j] == PASSES:
             continue
         i, reach = marks[j], flights[PATH_OF * SCRATCH_ROW + j] + allowance
         cell = list_of(bodies, np.int64(cubes[j]), reach)
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         path = flights[PATH_OF * SCRATCH_ROW + j]
-        if may_hit(bodies, physics, box, cell, r, v, path) or takes_counter(bodies, box, cell, r):
+        if (
+            flights[RADIUS_OF * SCRATCH_ROW + j] == MEETS
+            or may_hit(bodies, physics, box, cell, r, v, path)
+            or takes_counter(bodies, box, cell, r)
+        ):
             n = bodies.counters[thread, COUNT]
             if n == bodies.values.shape[1]:
                 note(bodies.faults[thread], now.counter.step, TOO_MANY, 0)
@@ -282,12 +312,13 @@ def meets_ball(radius, y, w, time):
 def look_up_ball(bodies, box, flights, cell, allowance, j, zero):
     """Put the ball that is alone near a candidate, on the list of its cell, in its column.
 
-    Where none is, or the particle takes a counter-force, it is one that all flights meet.
+    Where none is, or the particle takes a counter-force, it is one of radius BEYOND.
     """
     x, u, radius, r = zero, zero, BEYOND, load_scratch(flights, PLACE_OF * SCRATCH_ROW + j, zero)
     holds = flights[PATH_OF * SCRATCH_ROW + j] + allowance < LIST_REACH
-    i = np.int64(bodies.alone[cell]) if holds else NO_BODY
-    if i != NO_BODY and not takes_counter(bodies, box, cell, r):
+    i = np.int64(bodies.alone[cell]) if holds else np.int64(SEVERAL)
+    ball = i >= 0 and of_kind(bodies, i, IS_BALL) > 0.5
+    if ball and not takes_counter(bodies, box, cell, r):
         x, u = load(bodies.rows, i, PLACE, zero), load(bodies.rows, i, MEAN_VELOCITY, zero)
         radius = of_kind(bodies, i, RADIUS) + bodies.rows[i, STRIDE]
     store_scratch(flights, BALL_OF * SCRATCH_ROW + j, x)
@@ -297,7 +328,7 @@ def look_up_ball(bodies, box, flights, cell, allowance, j, zero):
 
 @scalar
 def passes_ball(box, flights, j, time, zero):
-    """1 where a candidate may meet the ball in its column, else 0."""
+    """Whether a candidate may meet the ball in its column."""
     r, v = (
         load_scratch(flights, PLACE_OF * SCRATCH_ROW + j, zero),
         load_scratch(flights, VELOCITY_OF * SCRATCH_ROW + j, zero),
@@ -307,8 +338,10 @@ def passes_ball(box, flights, j, time, zero):
         load_scratch(flights, BALL_VELOCITY_OF * SCRATCH_ROW + j, zero),
         flights[PATH_OF * SCRATCH_ROW + j],
     )
-    radius, w = flight_by_ball(flights[RADIUS_OF * SCRATCH_ROW + j], u, v, speed, path, time)
-    return 1.0 if meets_ball(radius, added_scaled(r, -1.0, x), w, time) else 0.0
+    ball = flights[RADIUS_OF * SCRATCH_ROW + j]
+    radius, w = flight_by_ball(ball, u, v, speed, path, time)
+    meets = MEETS if meets_ball(radius, added_scaled(r, -1.0, x), w, time) else PASSES
+    return UNKNOWN if ball == BEYOND else meets
 
 
 @scalar
