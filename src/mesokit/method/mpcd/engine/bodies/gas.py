@@ -84,6 +84,7 @@ from mesokit.scalar.gamma import gamma_number, likely
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.poisson import poisson_number
+from mesokit.scalar.prefetch import prefetch
 from mesokit.scalar.random import (
     BODY_GAS_NUMBER,
     BODY_GAS_PLACE,
@@ -97,9 +98,13 @@ from mesokit.scalar.vector import added, added_scaled, dot, first, outer, scaled
 
 MOST_OF_CELL = 2**10  # virtual particles of a body in a cell: more never come
 MOST_DRAWS = 256  # of a place in the part of a cell that is in a ball
+AHEAD = 8  # entries of the gas
+VECTOR = 8  # numbers of the longest vectors
 HALF_DIAGONAL = 0.5 * math.sqrt(3.0)
 # Rows of a batch of cells beside those of `virtual.per_cell`. Places and velocities have three.
+# Cells that wait for a place have columns of their own; WAITING: the row of their keys.
 GAS_AT, MIDDLE, CENTRE, BALL, SPEED = 0, 13, 16, 19, 20
+WAITING_MIDDLE, WAITING_CENTRE, WAITING = 21, 24, 3
 
 
 @stage
@@ -125,7 +130,10 @@ def draw_all_gas(worker, now, physics, fluid, bodies):
         take_noise(worker, of_bodies(physics), bodies, i)
     barrier(worker)
     bodies.sums[thread] = 0
-    for n in range(here[GAS_COUNT]):
+    sums, length = fluid.cells.sums[thread], sums_length(len(physics.terms))
+    for n in range(here[GAS_COUNT]):  # sums of cells are fetched some entries ahead
+        ahead = np.int64(bodies.gas_cell[thread, min(n + AHEAD, here[GAS_COUNT] - 1)])
+        prefetch(sums, ahead * length, 0)
         move_gas(thread, now, physics, fluid, bodies, n)
 
 
@@ -246,7 +254,7 @@ def draw_cells_of_balls(thread, counter, physics, bodies):
         work[MEAN * SCRATCH_ROW + j] = mean if j < count else 0.0
         store_scratch(work, GAS_AT * SCRATCH_ROW + j, place)
     count_batch(keys[0], counter, BODY_GAS_NUMBER, work)
-    place_batch(counter, work, keys[0], bodies.chosen[thread], count, zero)
+    place_batch(counter, work, keys, bodies.chosen[thread], count, zero)
     for j in range(LANES):
         m = bodies.gas_mass * max(work[NUMBER * SCRATCH_ROW + j], 1.0)
         thermal = thermal_noise(counter, physics, keys[0, j], 0, m)
@@ -268,24 +276,36 @@ def place_batch(counter, work, keys, waiting, count, zero):
     """A uniform place in the ball for each cell with particles: draws until it lies there."""
     left, draw = 0, 0
     for j in range(count):
-        waiting[left] = j
-        left += 1 if work[NUMBER * SCRATCH_ROW + j] > 0.5 else 0
+        if work[NUMBER * SCRATCH_ROW + j] > 0.5:
+            wait_for_place(work, keys, waiting, j, left, zero)
+            left += 1
+    # Cells that wait are the first entries of columns of their own, so that each draw is one loop
+    # over vectors, which are whole. Those that have found a place leave these columns.
     while left > 0 and draw < MOST_DRAWS:
-        for n in range(left):
-            j = waiting[n]
-            middle = load_scratch(work, MIDDLE * SCRATCH_ROW + j, zero)
-            centre = load_scratch(work, CENTRE * SCRATCH_ROW + j, zero)
-            s = added_scaled(uniform_place(counter, middle, keys[j], draw), -1.0, centre)
+        for n in range((left + VECTOR - 1) // VECTOR * VECTOR):
+            middle = load_scratch(work, WAITING_MIDDLE * SCRATCH_ROW + n, zero)
+            centre = load_scratch(work, WAITING_CENTRE * SCRATCH_ROW + n, zero)
+            s = added_scaled(uniform_place(counter, middle, keys[WAITING, n], draw), -1.0, centre)
             store_scratch(work, THERMAL * SCRATCH_ROW + n, s)
         still = 0
         for n in range(left):
-            j, s = waiting[n], load_scratch(work, THERMAL * SCRATCH_ROW + n, zero)
-            outside = dot(s, s) >= work[BALL * SCRATCH_ROW + j] * work[BALL * SCRATCH_ROW + j]
-            if not outside:
+            s = load_scratch(work, THERMAL * SCRATCH_ROW + n, zero)
+            j = waiting[n]
+            if dot(s, s) < work[BALL * SCRATCH_ROW + j] * work[BALL * SCRATCH_ROW + j]:
                 store_scratch(work, GAS_AT * SCRATCH_ROW + j, s)
-            waiting[still] = j
-            still += 1 if outside else 0
+            else:
+                wait_for_place(work, keys, waiting, j, still, zero)
+                still += 1
         left, draw = still, draw + 1
+
+
+@scalar
+def wait_for_place(work, keys, waiting, j, n, zero):
+    """Put a cell of the batch in column n of those that wait for a place."""
+    for row in (MIDDLE, CENTRE):
+        values = load_scratch(work, row * SCRATCH_ROW + j, zero)
+        store_scratch(work, (row - MIDDLE + WAITING_MIDDLE) * SCRATCH_ROW + n, values)
+    waiting[n], keys[WAITING, n] = j, keys[0, j]
 
 
 @scalar
