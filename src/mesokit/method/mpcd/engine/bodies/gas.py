@@ -94,7 +94,7 @@ from mesokit.scalar.random import (
     unit_open,
     words,
 )
-from mesokit.scalar.vector import added, added_scaled, dot, first, outer, scaled
+from mesokit.scalar.vector import added, added_scaled, chosen, dot, first, outer, scaled
 
 MOST_OF_CELL = 2**10  # virtual particles of a body in a cell: more never come
 MOST_DRAWS = 256  # of a place in the part of a cell that is in a ball
@@ -185,6 +185,9 @@ def is_cut(bodies, i, s):
     reach = of_kind(bodies, i, RADIUS) + HALF_DIAGONAL
     if dot(s, s) > reach * reach:
         return False
+    if of_kind(bodies, i, IS_BALL) > 0.5:
+        within = reach - 2.0 * HALF_DIAGONAL
+        return within < 0.0 or dot(s, s) >= within * within
     q = load(bodies.rows, i, TURN, FOUR)
     kind = bodies.kind[i]
     deep = is_nearer(bodies, kind, q, s, -HALF_DIAGONAL)
@@ -288,14 +291,13 @@ def place_batch(counter, work, keys, waiting, count, zero):
             s = added_scaled(uniform_place(counter, middle, keys[WAITING, n], draw), -1.0, centre)
             store_scratch(work, THERMAL * SCRATCH_ROW + n, s)
         still = 0
-        for n in range(left):
-            s = load_scratch(work, THERMAL * SCRATCH_ROW + n, zero)
-            j = waiting[n]
-            if dot(s, s) < work[BALL * SCRATCH_ROW + j] * work[BALL * SCRATCH_ROW + j]:
-                store_scratch(work, GAS_AT * SCRATCH_ROW + j, s)
-            else:
-                wait_for_place(work, keys, waiting, j, still, zero)
-                still += 1
+        for n in range(left):  # without branches, as half of them would be a surprise
+            s, j = load_scratch(work, THERMAL * SCRATCH_ROW + n, zero), waiting[n]
+            inside = dot(s, s) < work[BALL * SCRATCH_ROW + j] * work[BALL * SCRATCH_ROW + j]
+            before = load_scratch(work, GAS_AT * SCRATCH_ROW + j, zero)
+            store_scratch(work, GAS_AT * SCRATCH_ROW + j, chosen(inside, s, before))
+            wait_for_place(work, keys, waiting, j, still, zero)
+            still += 1 - np.int64(inside)
         left, draw = still, draw + 1
 
 
@@ -449,11 +451,14 @@ def take_recoil(worker, now, physics, fluid, bodies):
     """Give bodies what the collision at t + dt gives their gas, in whole numbers."""
     thread, zero = worker.thread, physics.zero
     gas, scale = bodies.gas[thread], momentum_scale(physics)
-    for n in range(bodies.counters[thread, GAS_COUNT]):
+    count, length = bodies.counters[thread, GAS_COUNT], record_length(len(physics.coefficients))
+    for n in range(count):
+        ahead = np.int64(bodies.gas_cell[thread, min(n + AHEAD, count - 1)])
+        prefetch(fluid.cells.coefficients, ahead * length, 0)
         i, r = np.int64(bodies.gas_body[thread, n]), load(gas, n, GAS_PLACE, zero)
         v, kept = load(gas, n, GAS_VELOCITY, zero), load(gas, n, GAS_KEPT, zero)
         cell = np.uint64(bodies.gas_cell[thread, n])
-        record = cell * np.uint64(record_length(len(physics.coefficients)))
+        record = cell * np.uint64(length)
         needed = load_values(fluid.cells.coefficients, record, physics.coefficients)
         after = collide(physics.rule, needed, kept, in_cell(r, now.grid))
         gain = scaled(gas[n, GAS_MASS], added_scaled(after, -1.0, v))
