@@ -95,8 +95,8 @@ class MovingBodies(NamedTuple):
     tensor (threads, 2, 2 d^2): terms of the stress, before and after the collision.
     counters (threads, COUNTERS); faults (threads, 8): the first thing that goes wrong; work
     (threads, WORK), chosen (threads, LANES), columns (threads, ROWS * SCRATCH_ROW): scratch memory;
-    keys (threads, 3, LANES): of each cell that waits for its gas the key, the cell and the body;
-    waste: what walls take by flights that do not count.
+    keys (threads, 4, LANES): of each cell that waits for its gas the key, the cell and the body,
+    and the keys of those without a place; waste: what walls take by flights that do not count.
     counters_near: (1,) where the fluid near bodies takes counter-forces, else ().
     solid: walls as the potential of gaps sees them, or (). pull: the uniform acceleration of all
     that balances forces on bodies. messages: to other ranks, or ().
