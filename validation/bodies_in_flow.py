@@ -261,7 +261,8 @@ def shear(page: Page) -> None:
         known = rate / (aspect + 1 / aspect)
         note = f"without noise {known:.4f}; {note}"
         if isinstance(body, EllipseBody):
-            known = noisy_turning(*body.size, rate)
+            spread = 2 / (math.pi * viscosity("at+a", 2) * (body.size[0] ** 2 + body.size[1] ** 2))
+            known = noisy_turning(aspect, spread, rate)
         reynolds = rate * half**2 / VISCOSITIES["at+a", d][0]
         one = Comparison(f"{name}: angular velocity", abs(c.measured), c.error, known, "1/tau",
                          f"rate {rate:g}, Re {reynolds:.2f}; {note}")  # fmt: skip
@@ -316,10 +317,12 @@ def einstein(page: Page) -> None:
     page.table(rows)
 
 
-def noisy_turning(length: float, wide: float, rate: float) -> float:
-    """Mean angular velocity of an ellipse in a shear flow, with noise (Fokker and Planck)."""
-    spread = 1 / (2 * math.pi * viscosity("at+a", 2) * (length**2 + wide**2) / 4)
-    stretch = (length**2 - wide**2) / (length**2 + wide**2)
+def noisy_turning(aspect: float, spread: float, rate: float) -> float:
+    """Mean angular velocity of an axis in the plane of a shear flow, with noise (Fokker, Planck).
+
+    `spread` is its rotational diffusion coefficient.
+    """
+    stretch = (aspect**2 - 1) / (aspect**2 + 1)
     turning = rate / 2 * np.array([stretch / 2, 1, stretch / 2])  # modes -2, 0, 2 of d phi/dt
     modes = np.arange(-40, 41)  # of exp(2 i n phi)
     matrix = np.diag(-4.0 * spread * modes**2).astype(complex)

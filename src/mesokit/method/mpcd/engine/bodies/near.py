@@ -44,8 +44,8 @@ from mesokit.scalar.vector import added_scaled, dot, scaled
 HALF_DIAGONAL = 0.5 * math.sqrt(3.0)  # of a cell, in 3D
 BEYOND = 1e6  # a path that lists never hold
 LIST_REACH = 1.5  # cells: lists have the bodies whose surface is so near
-LISTS_HOLD = 0.15  # cells: lists are made anew when a surface has gone so far
-PARTNERS_HOLD = 0.5  # cells: the farthest that surfaces may go with one list of partners
+LISTS_HOLD = 0.25  # cells: lists are made anew when a surface has gone so far
+PARTNERS_HOLD = 0.6  # cells: the farthest that surfaces may go with one list of partners
 PARTS = 64.0  # of a cell: what is clear is kept in whole numbers of these
 FAR = np.uint8(LIST_REACH * PARTS)
 # Where scratch memory has how far surfaces go with one list, and how far images have slid.
