@@ -61,7 +61,6 @@ L_SHAPE = (Rectangle(centre=(0, 0), size=(6, 2)), Rectangle(centre=(2, 2.5), siz
 DISKS, DISK, SQUARE = 29, 1.5, 32  # of the structure at rest: number, radius, side of the box
 CHAINS, SWEEPS = 200, 2000  # of its Monte Carlo
 LEFT_OUT = (
-    ("D(L) over three boxes; long-time tails", "the noise is larger than the effect in these runs"),
     ("published virtual particles alone", "both rules and the hits alone are shown"),
     ("pressure of bodies at rest", "the g(r) stands for it"),
 )
@@ -540,7 +539,8 @@ def make(parts: Sequence[str] = tuple(PARTS)) -> int:
     """Write the page, of all parts or those named."""
     page = Page("bodies", "Bodies that move in the fluid, at rest")
     page.text(PREFACE)
-    page.text("What a flow does to them, and they to a flow: [bodies in flow](bodies_in_flow.md).")
+    page.text("What a flow does to them, and they to a flow: [bodies in flow](bodies_in_flow.md). "
+              "D in three boxes and tails: [over long times](bodies_long_times.md).")  # fmt: skip
     for name in parts:
         PARTS[name](page)
     page.heading("Not measured here")

@@ -210,6 +210,8 @@ from mesokit.theory.soft_or_rigid import stiffness_of_equal_cost as stiffness_of
 from mesokit.theory.sonine import fourth_cumulant as fourth_cumulant
 from mesokit.theory.sonine import sonine_component_cdf as sonine_component_cdf
 from mesokit.theory.sonine import sonine_speed_cdf as sonine_speed_cdf
+from mesokit.theory.sphere_memory import sphere_angular_vacf as sphere_angular_vacf
+from mesokit.theory.sphere_memory import sphere_vacf as sphere_vacf
 from mesokit.theory.square_array import square_array_drag as square_array_drag
 from mesokit.theory.square_array import square_array_drag_dilute as square_array_drag_dilute
 from mesokit.theory.square_array import square_array_permeability as square_array_permeability

@@ -1,0 +1,310 @@
+"""Bodies in a flow, what the other page left open: lattices, weak forces, 3D shear, long swimmers.
+
+Usage: python validation/bodies_more_flow.py [parts...] [--short]
+
+Parts are those of `PARTS`, all unless said.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from bodies_in_flow import by_images, by_slip, noisy_turning
+from common import SHORT, Page, found, main, renamed
+from moving_bodies import (
+    PREFACE,
+    SLIP,
+    STEP,
+    VISCOSITIES,
+    WARMUP,
+    case_of,
+    fluid,
+    gap_energy,
+    kept,
+    met,
+    ran,
+    steps,
+    viscosity,
+)
+
+from mesokit import (
+    BodyDrift,
+    BodyStart,
+    Box,
+    Case,
+    Comparison,
+    DiskBody,
+    EllipseBody,
+    Run,
+    Simulation,
+    SphereBody,
+    SpheroidBody,
+    Squirming,
+    Stress,
+    theory,
+)
+
+ETA, B = viscosity("at+a", 3), SLIP["at+a", 3]
+
+
+def wide_mobility(radius: float) -> float:
+    """Mobility of a sphere in a wide fluid, AT+a, with slip."""
+    return (1 + B / (radius + 2 * B)) / (6 * math.pi * ETA * radius)
+
+
+# ---------------------------------------------------------------- settling
+
+
+def lattices(page: Page) -> None:
+    """Spheres on a lattice that have not left it yet."""
+    page.heading("Settling of a lattice")
+    page.text(
+        "Eight spheres of R = 2 on a simple cubic lattice in a cube, each drawn by the same force "
+        "with counter-force, AT+a: mean speed between 5 and 30 time units after the start, over "
+        "many starts of the fluid, before they have left their places. Theory is the friction of "
+        "Sangani and Acrivos in the cube of one sphere, with slip. So the flow between crowded "
+        "spheres is right. A lattice settles at half the speed of hard spheres at random: what is "
+        "between follows from where the spheres are."
+    )
+    rows, radius, force, number = [], 2.0, 20.0, 8
+    starts, first, last = (4 if SHORT else 120), 50, 300
+    for side in (12, 16):
+        body = SphereBody(
+            radius=radius, number=number, force=(force, 0.0, 0.0), counter_force=True,
+            start=BodyStart("lattice"),
+        )  # fmt: skip
+        case = case_of(body, side, "at+a", last)
+
+        def speeds(case: Case = case) -> np.ndarray:
+            found = []
+            for seed in range(starts):
+                run = Run(steps=last, warmup=0, seed=seed)
+                engine = Simulation(replace(case, run=run), threads=1).engine
+                engine.advance(first)
+                before = engine.bodies.places(unwrapped=True)
+                engine.advance(last - first)
+                moved = engine.bodies.places(unwrapped=True) - before
+                found.append(
+                    [moved[:, 0].mean() / ((last - first) * STEP), moved.std(axis=0).max()]
+                )
+            return np.array(found)
+
+        values = kept(page, f"lattice-{side}", f"{starts} {first} {case.to_toml()}", speeds)
+        unit = force * wide_mobility(radius)
+        phi = number * 4 / 3 * math.pi * radius**3 / side**3
+        known = 1 / theory.sphere_friction_in_cube(radius, side / 2, ETA, B) / wide_mobility(radius)
+        rows.append(Comparison(
+            f"phi = {phi:.3f}: V/V0", values[:, 0].mean() / unit,
+            values[:, 0].std(ddof=1) / math.sqrt(starts) / unit, float(known), "",
+            f"{starts} starts; spread at the end {values[:, 1].mean():.2f} cells",
+        ))  # fmt: skip
+        met(page, f"lattice, {rows[-1].what}", rows[-1], 5)
+    page.table(rows)
+
+
+def large_spheres(page: Page) -> None:
+    """Hindered settling of larger spheres, whose gap law is short beside them."""
+    page.heading("Hindered settling of larger spheres")
+    gaps = np.linspace(1e-3, 0.5, 500)
+    apart = float((1 - np.exp(-gap_energy(gaps))).mean() * 0.5)
+    page.text(
+        "18 spheres at phi = 0.147 as on the page of bodies in flow, with R = 2 and with R = 4 in "
+        f"a cube twice as long. The gap law keeps surfaces {apart:.2f} cells apart at least, so "
+        "that the spheres act as if 38 % and 18 % larger. Theory is (1 - phi)^5 of hard spheres; "
+        "the note has the same law with the volume that the gap law keeps. Larger spheres are no "
+        "more than a little nearer to the law of hard spheres. The lattice above says that it is "
+        "the places of the spheres, not the flow between them. One start for each: the scatter of "
+        "starts is not in the error bars."
+    )
+    rows, number, force = [], 18, 20.0
+    for radius, length in ((2.0, 7e3), (4.0, 2.8e4)):
+        side, swollen = 8 * int(radius), (1 + apart / (2 * radius)) ** 3
+        body = SphereBody(radius=radius, number=number, force=(force, 0.0, 0.0), counter_force=True)
+        files, note = ran(page, f"settling-{radius:g}",
+                          case_of(body, side, "at+a", length, BodyDrift()))  # fmt: skip
+        c = found(files["body-drift"], "mobility along x")
+        phi = number * 4 / 3 * math.pi * radius**3 / side**3
+        x = phi * (1 + phi - 0.189 * phi**2)
+        few = theory.settling_of_few(swollen * phi, number, viscosity=(1 + 1.5 * x) / (1 - x))
+        few /= swollen ** (1 / 3)
+        free = wide_mobility(radius)
+        rows.append(Comparison(
+            f"R = {radius:g}: V/V0", c.measured / free + few, c.error / free,
+            theory.hindered_settling(phi, 5.0), "",
+            f"Re {c.measured * force * radius / VISCOSITIES['at+a', 3][0]:.2f}; "
+            f"{c.measured / free:.3f} in this box; {(1 - swollen * phi) ** 5:.3f} with the gap "
+            f"law; {note}",
+        ))  # fmt: skip
+        met(page, f"settling, {rows[-1].what}", rows[-1], 5)
+    page.table(rows)
+
+
+# ---------------------------------------------------------------- weak forces
+
+
+def weak(page: Page) -> None:
+    """A spheroid drawn by a weak force."""
+    page.heading("A spheroid under a weaker force")
+    page.text(
+        "The spheroid 8 x 4 of the page of bodies in flow, where it was 11 % too slow across its "
+        "axis at a Reynolds number of its half length of 1: here with a third of the force. Theory "
+        "as there."
+    )
+    side, axes, force = 18, [4.0, 2.0, 2.0], 25.0 / 3
+    body = SpheroidBody(
+        half_length=4.0, radius=2.0, start=BodyStart("given", positions=[(side / 2,) * 3]),
+        counter_force=True, force=(force,) * 3, fixed=("orientation",),
+    )  # fmt: skip
+    files, note = ran(page, "weak", case_of(body, side, "at+a", 1.2e5, BodyDrift()))
+    friction = theory.ellipsoid_friction(axes, ETA)
+    x, y, z = (found(files["body-drift"], f"mobility along {axis}") for axis in "xyz")
+    rows = []
+    for way, k, value, error in (
+        ("along", 0, x.measured, x.error),
+        ("across", 1, 0.5 * (y.measured + z.measured), 0.5 * math.hypot(y.error, z.error)),
+    ):
+        known = 1 / friction.translation[k] + by_images(axes, k, side, ETA)
+        known += by_slip(axes, k, B, ETA)
+        rows.append(Comparison(f"spheroid 8 x 4, {way}: mobility", value, error, float(known),
+                               x.unit, note))  # fmt: skip
+        met(page, rows[-1].what, rows[-1], 5)
+    page.table(rows)
+
+
+# ---------------------------------------------------------------- shear
+
+
+def turning(page: Page) -> None:
+    """Turning in a shear flow."""
+    page.heading("Turning in shear")
+    page.text(
+        "Lees-Edwards shear, AT+a, longer than on the page of bodies in flow. A disk and a sphere "
+        "turn at half the rate. A spheroid turns about a hinge along the vorticity, so that its "
+        "axis stays in the shear plane. Theory there is the mean of Jeffery's angular velocity "
+        "over the steady distribution of angles, with D_r end over end of a wide fluid; without "
+        "noise it is rate/(r + 1/r)."
+    )
+    rows = []
+    half, wide = 3.0, 1.5
+    spheroid = SpheroidBody(half_length=half, radius=wide, hinge=(0.0, 0.0, 1.0))
+    D_r = 1 / theory.ellipsoid_friction([half, wide, wide], ETA).rotation[1]
+    for name, body, side, length, rate in (
+        ("disk R = 2", DiskBody(radius=2), 20, 1e6, 0.04),
+        ("sphere R = 2", SphereBody(radius=2), 12, 2.5e5, 0.04),
+        ("spheroid 6 x 3, 3D", spheroid, 14, 1e5, 0.04),
+    ):
+        d = body.dimensions[0]
+        case = case_of(body, side, "at+a", length, BodyDrift(), shear_rate=rate)
+        files, note = ran(page, f"turning-{d}-{side}", case)
+        c = found(files["body-drift"], "angular velocity about z")
+        known, reach = rate / 2, 2.0
+        if isinstance(body, SpheroidBody):
+            known, reach = noisy_turning(half / wide, D_r, rate), half
+            note = f"without noise {rate / (half / wide + wide / half):.4f}; {note}"
+        reynolds = rate * reach**2 / VISCOSITIES["at+a", d][0]
+        rows.append(Comparison(f"{name}: angular velocity", abs(c.measured), c.error, known,
+                               "1/tau", f"rate {rate:g}, Re {reynolds:.2f}; {note}"))  # fmt: skip
+        met(page, rows[-1].what, rows[-1], 5)
+    page.table(rows)
+
+
+def einstein(page: Page) -> None:
+    """Viscosity of a suspension of spheres."""
+    page.heading("Einstein viscosity in 3D")
+    rate, side, radius, number = 0.04, 16, 2.0, 6
+    phi = number * 4 / 3 * math.pi * radius**3 / side**3
+    page.text(
+        f"Viscosity by `stress` of {number} spheres of R = 2 in a cube of side {side}, phi = "
+        f"{phi:.3f}, AT+a, over that of the same cube without them, at the rate {rate:g}. Theory "
+        "is 1 + 2.5 phi (1 + 2 b/R)/(1 + 5 b/R), to first order. Batchelor's 6.2 phi^2 of Brownian "
+        f"spheres would add {6.2 * phi:.2f} to the gain over phi; these are kept apart, and "
+        "Peclet's number is 0.04 R^2/D = 43. The force at the border was not measured apart."
+    )
+    length, rows = 1e5, []
+    empty = Case(
+        run=Run(steps=steps(length), warmup=WARMUP[3], seed=11), observe=[Stress()],
+        box=Box([side] * 3, shear_rate=rate), fluid=fluid("at+a"),
+    )  # fmt: skip
+    body = SphereBody(radius=radius, number=number)
+    full = case_of(body, side, "at+a", length, Stress(), shear_rate=rate)
+    (files, note), (others, _) = ran(page, "einstein-0", empty), ran(page, "einstein-6", full)
+    alone, c = found(files["stress"], "viscosity"), found(others["stress"], "viscosity")
+    rows.append(renamed(alone, "without bodies: viscosity", note))
+    ratio = c.measured / alone.measured
+    error = ratio * math.hypot(c.error / c.measured, alone.error / alone.measured)
+    known = theory.suspension_viscosity(phi, 3, slip=B / radius)
+    rows.append(Comparison("eta/eta0", ratio, error, known, "", note))
+    rows.append(Comparison("(eta/eta0 - 1)/phi", (ratio - 1) / phi, error / phi,
+                           (known - 1) / phi, "", note))  # fmt: skip
+    met(page, f"3D: {rows[-1].what}", rows[-1], 10)
+    page.table(rows)
+
+
+# ---------------------------------------------------------------- swimmers
+
+
+def squirmers(page: Page) -> None:
+    """Speeds of an ellipse and of a spheroid that swim."""
+    page.heading("Long swimmers")
+    first = 0.15
+    page.text(
+        f"Neutral squirmers (B1 = {first:g}) with half axes of 4 and 2, AT+a: an ellipse in a "
+        "square of side 30, a spheroid in a cube of side 18. Theory is B1 r/(1 + r) and that of "
+        "Keller and Wu, times 1 - phi, with the first order of the slip length that rotation of "
+        "balls gives (`slipping`)."
+    )
+    rows = []
+    for name, body, side, length in (
+        ("ellipse 8 x 4", EllipseBody(size=(8, 4), swim=Squirming(B1=first)), 30, 3e5),
+        ("spheroid 8 x 4",
+         SpheroidBody(half_length=4, radius=2, swim=Squirming(B1=first)), 18, 3e4),
+    ):  # fmt: skip
+        d = body.dimensions[0]
+        files, note = ran(page, f"squirmer-{d}", case_of(body, side, "at+a", length, BodyDrift()))
+        c = found(files["body-drift"], "velocity along its own axis")
+        wide = theory.squirmer_speed(first, d, 2.0)
+        slower = slipping(4.0, 2.0, SLIP["at+a", d], d)
+        known = wide * (1 - body.solid(d).volume / side**d) * slower
+        rows.append(renamed(c, f"{name}: swimming speed",
+                            f"slip takes {100 * (1 - slower):.1f} %; {note}", known))  # fmt: skip
+        met(page, rows[-1].what, rows[-1], 5)
+    page.table(rows)
+
+
+def slipping(half: float, wide: float, slip: float, d: int) -> float:
+    """What a slip length leaves of the speed of a neutral squirmer, to first order.
+
+    The flow about an ellipsoid that squirms as e.t along its tangent t has no vorticity, so that
+    its shear at the surface is twice the curvature of the meridian times that velocity. The speed
+    is minus the mean of the surface velocity with the weight n.x (Lorentz' reciprocal theorem).
+    """
+    angle = (np.arange(2000) + 0.5) * math.pi / 2000
+    s2 = (half * np.sin(angle)) ** 2 + (wide * np.cos(angle)) ** 2
+    weight = np.sin(angle) ** (d - 2)
+    along = (half * np.sin(angle)) ** 2 / s2 * weight
+    curvature = half * wide / s2**1.5
+    return float(1 - 2 * slip * (along * curvature).sum() / along.sum())
+
+
+PARTS: dict[str, Callable[[Page], None]] = {
+    "lattices": lattices, "large_spheres": large_spheres, "weak": weak, "turning": turning,
+    "einstein": einstein, "squirmers": squirmers,
+}  # fmt: skip
+
+
+def make(parts: Sequence[str] = tuple(PARTS)) -> int:
+    """Write the page, of all parts or those named."""
+    page = Page("bodies_more_flow", "Bodies in a flow: lattices, weak forces, 3D")
+    page.text(PREFACE)
+    page.text("It goes on where [bodies in flow](bodies_in_flow.md) left off.")
+    for name in parts:
+        PARTS[name](page)
+    return page.write()
+
+
+if __name__ == "__main__":
+    main(lambda: make([name for name in PARTS if name in sys.argv[1:]] or tuple(PARTS)))
