@@ -10,6 +10,7 @@ from mesokit.theory._check import positive
 from mesokit.theory.velocity_autocorrelation import _after_zero
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 POINTS, LEAST, MOST = 4000, 1e-9, 6.5  # of an integral over z in which exp(-z^2) is a factor
 
 
@@ -70,7 +71,7 @@ def sphere_angular_vacf(
 
 
 def _decay(
-    time: ArrayLike, radius: float, viscosity: float, friction: Callable[[Array], Array]
+    time: ArrayLike, radius: float, viscosity: float, friction: Callable[[Complex], Complex]
 ) -> Array:
     """Inverse Laplace transform of one over a friction, which is a function of R sqrt(s/nu).
 

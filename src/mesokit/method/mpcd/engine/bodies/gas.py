@@ -297,7 +297,7 @@ def place_batch(counter, work, keys, waiting, count, zero):
             before = load_scratch(work, GAS_AT * SCRATCH_ROW + j, zero)
             store_scratch(work, GAS_AT * SCRATCH_ROW + j, chosen(inside, s, before))
             wait_for_place(work, keys, waiting, j, still, zero)
-            still += 1 - np.int64(inside)
+            still += 0 if inside else 1
         left, draw = still, draw + 1
 
 
