@@ -549,7 +549,9 @@ def settling(page: Page) -> None:
         "law (the last number of the note) is what is measured at the lower two fractions, and "
         "too low at the highest. Gaps below a cell, which the fluid does not resolve, are another. "
         "A third of the force brings 18 spheres a little nearer: inertia is a small part. "
-        "One start for each fraction: the scatter of starts is not in the error bars."
+        "One start for each fraction: the scatter of starts is not in the error bars. The reason "
+        "is on [the next page](bodies_more_flow.md): where the spheres are, which the gap law "
+        "changes, and to which (1 - phi)^5 with another volume does not do justice."
     )
     gaps = np.linspace(1e-3, 0.5, 500)
     apart = float((1 - np.exp(-gap_energy(gaps))).mean() * 0.5)
