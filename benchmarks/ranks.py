@@ -30,6 +30,8 @@ CASES = {
     "W4": "2D periodic 160^2",
     "W5-disks": "2D channel 400 x 50 with disks",
     "B-dimers-5": "dimers 30^3, 5 sub-steps",
+    "D-2-fill": "8 spheres of R = 4 that move, 35^3",
+    "D-3-fill": "27 of them, 33^3",
     "C-5000-10": "5,000 beads in a fluid of 40^3, 10 sub-steps",
 }
 LEAST_STEPS = 100
