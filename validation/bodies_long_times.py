@@ -209,7 +209,7 @@ def swimmers(page: Page) -> None:
     every = 50
     for name, swim in (("at rest", None), ("swimming", Squirming(B1=first))):
         body = DiskBody(radius=RADIUS, swim=swim)
-        case = case_of(body, side, "at+a", 2e6 if swim else 1e6)
+        case = case_of(body, side, "at+a", 4e6 if swim else 2e6)
         series = recorded(page, f"swimmer-{name.replace(' ', '')}", case, every, place_and_angle)
         parts = np.array_split(series, PARTS_OF_RUN)
         lags = (round(20 / (every * STEP)), round(100 / (every * STEP)))

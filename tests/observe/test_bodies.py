@@ -22,7 +22,9 @@ from mesokit import (
     Fluid,
     Run,
     RunError,
+    SphereBody,
     SRDPlusA,
+    theory,
 )
 from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.protocol import BodyStart, BodyTrap, Squirming
@@ -30,6 +32,7 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.bodies import every_kind, followed
 from mesokit.report.figures import plot
 from mesokit.run.simulation import Simulation
+from mesokit.seam.estimate import Estimate
 from tests.helpers.moving_disks import DISKS, LATTICE, moving_disks, with_a_plank
 
 STEP = 0.1
@@ -399,3 +402,61 @@ def test_a_force_alone_gives_momentum():
     assert alone.extra["conserves_momentum"] == 0 and "largest drift of momentum" not in alone
     t, momentum = alone.x["time"], alone.value[:, 1]
     assert momentum[-1] - momentum[0] == pytest.approx(3 * 5.0 * (t[-1] - t[0]), rel=1e-6)
+
+
+def one_sphere(rule=None, side=18, **keys):
+    ball = SphereBody(**{"radius": 2, "number": 1, **keys})
+    fluid = Fluid(density=10, timestep=STEP, collision=rule or ATPlusA())
+    return Case(run=Run(steps=1), box=Box([side] * 3), fluid=fluid, bodies=(ball,))
+
+
+def test_the_memory_of_a_sphere_is_drag_with_that_of_the_fluid():
+    of = followed(one_sphere(), "body-correlation")
+    time = np.array([0.0, 1.0, 8.0, 20.0, 40.0])
+    nu = setting.solvent(one_sphere()).viscosity
+    kept, turned = of.memory(time, turns=False), of.memory(time, turns=True)
+    assert np.isnan([kept[:2], turned[:2]]).all()  # sound has not passed
+    wide = theory.sphere_vacf(time[2:], 2, nu, 10, of.mass)
+    images = theory.vacf_modes(time[2:], nu, 0.0, 10, [18] * 3)
+    images = images - theory.vacf_tail(time[2:], nu, 0.0, 10, 3)
+    assert kept[2:] == pytest.approx(wide + images)
+    inertia = 0.4 * of.mass * 4
+    assert turned[2:] == pytest.approx(theory.sphere_angular_vacf(time[2:], 2, nu, 10, inertia))
+    assert of.memory_holds() == pytest.approx((4 / nu, 18**2 / (4 * np.pi**2 * nu)))
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"number": 2},
+        {"swim": Squirming(B1=0.1)},
+        {"surface": "slip"},
+        {"fixed": ("x",)},
+        {"trap": BodyTrap(k=1.0)},
+        {"force": (1.0, 0.0, 0.0), "counter_force": True},
+    ],
+)
+def test_no_memory_is_known_of_other_bodies(keys):
+    of = followed(one_sphere(**keys), "body-correlation")
+    assert of.memory(np.array([10.0, 20.0]), turns=False) is None
+
+
+def test_no_memory_of_turning_is_known_without_angular_momentum():
+    of = followed(one_sphere(SRD(angle=130)), "body-correlation")
+    assert of.memory(np.array([10.0]), turns=True) is None
+    assert of.memory(np.array([10.0]), turns=False) is not None
+
+
+def test_a_correlation_twice_as_large_as_memory_has_that_ratio_to_it():
+    """Beside 40 blocks of noise that is equally large at each lag."""
+    case = one_sphere(side=40)
+    of = BodyCorrelation(max_lag=600).accumulator(case)
+    time = STEP * np.arange(601)
+    memory = of.of.memory(time, turns=False)
+    noise = np.random.default_rng(4).normal(size=(40, len(time)))
+    kept = Estimate(2 * np.nan_to_num(memory), 1e-7 * (noise - noise.mean(axis=0)), np.ones(40))
+    (ratio,) = [c for c in of.level(time, kept, memory) if c.what.startswith("ratio")]
+    assert ratio.measured == pytest.approx(2)
+    begin, end = of.of.memory_holds()
+    used = memory[(time >= begin) & (time <= end)]
+    assert ratio.error == pytest.approx(1e-7 * np.sqrt(40 / (used**2).sum()), rel=0.3)

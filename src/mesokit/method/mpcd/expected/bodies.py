@@ -124,6 +124,44 @@ class Followed(NamedTuple):
         mobility, why = self.rotational_mobility()
         return (float(self.case.fluid.kT) * mobility, why) if self.thermal else (math.nan, "")
 
+    def memory(self, time: NDArray[np.float64], turns: bool) -> NDArray[np.float64] | None:
+        """Correlation of a component of the velocity, or angular velocity, of one free sphere: drag
+        with the memory of the fluid, in this box. nan until sound has passed it.
+
+        None of anything else, and of turning where the stress is not symmetric.
+        """
+        known, coefficients = self.alone_in_a_cube(), setting.solvent(self.case)
+        free = len(self.turning if turns else self.moving) == 3 and self.thermal and not self.held
+        driven = self.kind.swim or self.kind.counter or holds(self.case)
+        if known is None or coefficients is None or not free or driven:
+            return None
+        if turns and self.asymmetric_share:
+            return None
+        radius, length, _ = known
+        fluid, nu, rho = self.case.fluid, coefficients.viscosity, fluid_mass_density(self.case)
+        found = np.full(len(time), math.nan)
+        late = time > radius / coefficients.sound_speed
+        t, kT = time[late], float(fluid.kT)
+        if not late.any():
+            return found
+        if turns:
+            inertia = float(self.moments[0])
+            found[late] = theory.sphere_angular_vacf(t, radius, nu, rho, inertia, kT)
+            return found
+        alone = theory.sphere_vacf(t, radius, nu, rho, self.mass, kT)
+        in_box = theory.vacf_modes(t, nu, 0.0, rho, [length] * 3, kT)
+        found[late] = alone + in_box - theory.vacf_tail(t, nu, 0.0, rho, 3, kT)
+        return found
+
+    def memory_holds(self) -> tuple[float, float]:
+        """From when, R^2/nu, and until when, L^2/(4 pi^2 nu), that is compared with."""
+        known, coefficients = self.alone_in_a_cube(), setting.solvent(self.case)
+        if known is None or coefficients is None:
+            return math.inf, 0.0
+        radius, length, _ = known
+        nu = coefficients.viscosity
+        return radius**2 / nu, length**2 / (4 * math.pi**2 * nu)
+
     @property
     def held(self) -> bool:
         """Whether springs hold them to places that do not slide past one another."""

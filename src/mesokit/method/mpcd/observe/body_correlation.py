@@ -32,9 +32,10 @@ class BodyCorrelation(Observable):
     component; or of its direction, which is the cosine of the angle that it has turned through.
 
     Velocities begin at kT/M (1 - M/M_all) where the momentum of all is zero, angular velocities at
-    kT/I; their integrals are diffusion coefficients. Axes along which the fluid flows or that a
-    wall closes are left out. The direction is that of axis x of the body: in d dimensions it is
-    forgotten as exp(-(d - 1) D_r t).
+    kT/I; their integrals are diffusion coefficients. Beside those of one sphere in a cube stands
+    drag with the memory of the fluid (`theory.sphere_vacf`), once sound has passed. Axes along
+    which the fluid flows or that a wall closes are left out. The direction is that of axis x of
+    the body: in d dimensions it is forgotten as exp(-(d - 1) D_r t).
     """
 
     quantity: Literal["body-correlation"] = tag("body-correlation")
@@ -77,19 +78,22 @@ class BodyCorrelationAccumulator(BodiesInTime):
         if of != "orientation":
             kept = kept.divided(len(self.axes))
         time = self.origins.sampled() * self.observable.every * self.case.fluid.timestep
-        given = self.decay(time, kept) if of == "orientation" else self.level(time, kept)
+        turns, directed = of == "angular velocity", of == "orientation"
+        memory = None if directed else self.of.memory(time, turns)
+        given = self.decay(time, kept) if directed else self.level(time, kept, memory)
         return self.report(
             {"time": time},
             kept,
             list(given),
             label=f"{LABELS[of]} of {self.of.name}",
-            drawing="curve" if of == "orientation" else "memory",
+            drawing="curve" if directed else "memory",
             units={"value": UNITS[of], "time": "tau"},
             samples=self.origins.count,
+            extra={} if memory is None else {"tail": memory},
         )
 
-    def level(self, time: Array, kept: Estimate) -> Iterator[Comparison]:
-        """Equipartition, and the diffusion coefficient."""
+    def level(self, time: Array, kept: Estimate, memory: Array | None) -> Iterator[Comparison]:
+        """Equipartition, the diffusion coefficient, and what the memory of the fluid leaves."""
         n, turns = len(time), self.observable.of == "angular velocity"
         if not n:
             return
@@ -108,6 +112,13 @@ class BodyCorrelationAccumulator(BodiesInTime):
         unit = "1/tau" if turns else "a^2/tau"
         note = joined("" if turns else self.cut_short(float(time[-1])), note)
         yield Comparison(what, *kept.total(trapezoid), expected, unit, note)
+        first_time, last_time = self.of.memory_holds()
+        window = (time >= first_time) & (time <= last_time)
+        if memory is not None and window.sum() >= 3:
+            weight = np.where(window, memory, 0.0)  # as the noise is the same everywhere
+            weight /= (weight**2).sum()
+            note = "drag with the memory of the fluid, without slip"
+            yield Comparison("ratio to the hydrodynamic tail", *kept.total(weight), 1.0, "", note)
 
     def cut_short(self, last: float) -> str:
         """A note where the fluid still carries bodies on at the last lag; "" where it hardly does.
