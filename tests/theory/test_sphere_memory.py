@@ -40,6 +40,20 @@ def test_angular_velocity_begins_at_equipartition_and_integrates_to_D_r(heavy):
     assert turning == pytest.approx(2.0 / (8 * math.pi * NU * RHO * RADIUS**3), rel=2e-3)
 
 
+@pytest.mark.parametrize("heavy", [1e3, 1e6, 1e9])
+def test_heavy_spheres_lose_their_motion_as_fast_as_friction_says(heavy):
+    """As exp(-zeta t/M), zeta of a steady motion: the fluid follows at once."""
+    mass = heavy * DISPLACED
+    inertia, t = 0.4 * mass * RADIUS**2, np.array([0.3, 1.0, 2.0]) * heavy
+    lost = 6 * math.pi * NU * RHO * RADIUS / mass
+    turned = 8 * math.pi * NU * RHO * RADIUS**3 / inertia
+    near = 3 / math.sqrt(heavy)  # the first order of the memory
+    kept = sphere_vacf(t, RADIUS, NU, RHO, mass) * mass
+    assert kept == pytest.approx(np.exp(-lost * t), rel=near)
+    kept = sphere_angular_vacf(t, RADIUS, NU, RHO, inertia) * inertia
+    assert kept == pytest.approx(np.exp(-turned * t), rel=near)
+
+
 def test_both_end_in_their_tails():
     t = np.array([1e5, 1e6])
     given = {"viscosity": NU, "diffusion": 0.0, "density": RHO, "dimension": 3}

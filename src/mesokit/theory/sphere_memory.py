@@ -1,17 +1,16 @@
 """Memory of a sphere in a viscous fluid: how its velocity and its angular velocity decay."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.special import wofz
 
 from mesokit.theory._check import positive
 from mesokit.theory.velocity_autocorrelation import _after_zero
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-POINTS, LEAST, MOST = 4000, 1e-9, 6.5  # of an integral over z in which exp(-z^2) is a factor
 
 
 def sphere_vacf(
@@ -37,7 +36,7 @@ def sphere_vacf(
     positive(radius=radius, viscosity=viscosity, density=density, mass=mass, kT=kT)
     heavy = 2 / 9 * mass / (density * 4 / 3 * math.pi * radius**3)
     unit = 6 * math.pi * viscosity * density * radius
-    return kT / unit * _decay(time, radius, viscosity, lambda a: 1 + a + (1 / 9 + heavy) * a**2)
+    return kT / unit * _decay(time, radius, viscosity, [1], [1 / 9 + heavy, 1, 1])
 
 
 def sphere_angular_vacf(
@@ -65,21 +64,24 @@ def sphere_angular_vacf(
     positive(radius=radius, viscosity=viscosity, density=density, inertia=inertia, kT=kT)
     unit = 8 * math.pi * viscosity * density * radius**3
     heavy = inertia * viscosity / (unit * radius**2)
-    return (
-        kT / unit * _decay(time, radius, viscosity, lambda a: 1 + a**2 / (3 + 3 * a) + heavy * a**2)
-    )
+    friction = [3 * heavy, 1 + 3 * heavy, 3, 3]  # times 3 (1 + a)
+    return kT / unit * _decay(time, radius, viscosity, [3, 3], friction)
 
 
 def _decay(
-    time: ArrayLike, radius: float, viscosity: float, friction: Callable[[Complex], Complex]
+    time: ArrayLike,
+    radius: float,
+    viscosity: float,
+    above: Sequence[float],
+    below: Sequence[float],
 ) -> Array:
-    """Inverse Laplace transform of one over a friction, which is a function of R sqrt(s/nu).
+    """Inverse Laplace transform of a ratio of polynomials in R sqrt(s/nu), highest power first.
 
-    The cut along negative s = -x: an integral of exp(-x t) over the imaginary part, with x t = z^2,
-    on a grid of the logarithm of z: rates of any size count at short times.
+    In partial fractions: that of 1/(sqrt(s) - r) is 1/sqrt(pi t) + r exp(r^2 t) erfc(-r sqrt(t)).
+    The first terms cancel where the degrees differ by two or more.
     """
-    t = _after_zero(time) * viscosity / radius**2
-    z = np.geomspace(LEAST, MOST, POINTS)
-    part = -(1 / friction(1j * z / np.sqrt(t)[..., None])).imag
-    found = np.trapezoid(np.exp(-(z**2)) * part * z**2, np.log(z), axis=-1)
-    return np.asarray(2 / math.pi * viscosity / radius**2 * found / t)
+    t = np.asarray(_after_zero(time) * viscosity / radius**2)[..., None]
+    roots = np.roots(below)
+    shares = np.polyval(above, roots) / np.polyval(np.polyder(below), roots)
+    found = (shares * roots * wofz(-1j * roots * np.sqrt(t))).sum(axis=-1)
+    return np.asarray(viscosity / radius**2 * found.real)
