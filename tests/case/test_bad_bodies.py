@@ -124,9 +124,19 @@ FILES = {
         "'rectangle', 'sphere' or 'spheroid'"
         for name in ("cylinder", "half-space")
     },
+    **{
+        SPACE + f'[[bodies]]\nshape = "sphere"\nradius = 3\n{held}\n'
+        "swim = { B1 = 0.1, tumble_rate = 0.2 }\n":
+        f"bodies[#1].swim.tumble_rate = 0.2: not with {said}; leave one out"
+        for held, said in (
+            ("hinge = [0, 0, 1]", "a hinge"),
+            ('fixed = ["orientation"]', "fixed = 'orientation'"),
+        )
+    },
     # what only a start can know
     PLANE + DISK + 'number = 2\nstart = { rule = "given", positions = [[2, 8], [13, 8]] }\n':
-        "bodies[#1].start.positions[#2] = [13, 8]: body 2 overlaps body 1",
+        "bodies[#1].start.positions[#2] = [13, 8]: body 2 overlaps body 1, or is nearer than 0.15 "
+        "cells to it",
     PLANE + DISK + 'start = { rule = "given", positions = [[8, 2]] }\n'
     '[[wall]]\nshape = "plates"\naxis = "y"\n':
         "bodies[#1].start.positions[#1] = [8, 2]: body 1 is in a wall, about 1 deep",
@@ -324,6 +334,11 @@ CASES = {
         "bodies[#1].swim.tumble_rate = 0.1: only of a sphere or a disk; others have no room to "
         "turn at once",
     ),
+    "light bodies in a long timestep": (
+        2, [DiskBody(radius=1, mass=20)], {"fluid": Fluid(timestep=0.5, density=10)},
+        "bodies[#1].mass = 20: at 4 thermal velocities it moves by 0.447 cells in a timestep; "
+        "expected at most 0.35: a shorter fluid.timestep, or heavier",
+    ),
     "nothing to balance": (
         3, [SphereBody(radius=3, counter_force=True)], {},
         "bodies[#1].counter_force = true: needs a force that it balances",
@@ -507,7 +522,12 @@ STARTS = {
     ),
     "disks on one lattice": (
         [DiskBody(radius=3, start=BodyStart(rule="lattice")) for _ in range(2)], {},
-        "bodies[#2].start: its body 1 overlaps body 1 of bodies[#1]",
+        "bodies[#2].start: its body 1 overlaps body 1 of bodies[#1], or is nearer than 0.15 cells "
+        "to it",
+    ),
+    "a lattice that touches": (
+        [DiskBody(radius=1.5, number=100, start=BodyStart(rule="lattice"))], {},
+        "bodies[#1].start: its body 2 overlaps body 1, or is nearer than 0.15 cells to it",
     ),
     "flat on a plate": ([EllipseBody(**OVAL, start=given([10, 2.1]))], SLIT, ""),
     "in a plate": (

@@ -99,9 +99,15 @@ WARNED = {
         "thinned in proportion",
     ),
     "fast": (
-        [20, 20, 20], [SphereBody(radius=1, mass=10)], {"density": 2, "kT": 9},
+        [20, 20, 20], [SphereBody(radius=1, mass=10, interaction=GapPotential(depth=0))],
+        {"density": 2, "kT": 9},
         "fluid.timestep = 0.3: in one, bodies[#1] moves by 0.28 of its radius; above 0.25 it is "
         "too hot: a shorter timestep or a larger mass",
+    ),
+    "hit into gaps": (
+        [20, 20], [DiskBody(radius=1, number=2)], {}, "fluid.timestep = 0.3: hits move bodies[#1] "
+        "by 0.026 cells after the gap law has acted, which brings bodies that touch about 0.099 kT "
+        "a step; above 0.03 they are too hot: a shorter timestep or a longer interaction.range",
     ),
     "sampled": (
         [20, 20], [UnionBody(parts=[Disk([0, 0], 3), Disk([4, 0], 3)])], {},
@@ -149,7 +155,7 @@ WARNED = {
 @pytest.mark.parametrize("name", WARNED)
 def test_a_warning(name):
     size, bodies, fluid, expected = WARNED[name]
-    more = {"timestep": 0.3} if name == "fast" else {}
+    more = {"timestep": 0.3} if name in ("fast", "hit into gaps") else {}
     assert warnings_of(size, *bodies, **HELD | fluid | more) == [expected]
 
 
@@ -176,12 +182,12 @@ def test_what_is_expected_of_each_kind_has_rows():
     nu, mobility = known.viscosity, 1 / (6 * math.pi * 10 * known.viscosity * 2)
     assert rows["speed of swims"] == (
         "0.02 a/tau",
-        f"estimate, of one alone; Reynolds number {0.06 / nu:.3g}",
+        f"estimate, of one in a wide fluid; Reynolds number {0.06 / nu:.3g}",
     )
     assert rows["speed of drawn"][0] == f"{5 * mobility:.4g} a/tau"
     assert rows["diffusion of drawn"] == (
         f"{mobility:.4g} a^2/tau",
-        f"estimate, of one alone; R^2/D = {4 / mobility:.3g} tau",
+        f"estimate, of one in a wide fluid; R^2/D = {4 / mobility:.3g} tau",
     )
 
 

@@ -296,6 +296,11 @@ class Body(ABC):
             raise ValueError("swim: only of a sphere, disk, spheroid or ellipse")
         if self.swim is not None and self.surface == "slip":
             raise ValueError("swim: not with surface = 'slip', which drags no fluid along")
+        if self.swim is not None and self.swim.tumble_rate:
+            held = "a hinge" if self.hinge is not None else "fixed = 'orientation'"
+            if self.hinge is not None or "orientation" in self.fixed:
+                rate = show(self.swim.tumble_rate)
+                raise ValueError(f"swim.tumble_rate = {rate}: not with {held}; leave one out")
 
     def _check_counter(self, counter: CounterForce) -> None:
         if self.counter_force:

@@ -25,6 +25,7 @@ LEAST_NEARBY = 5.0  # particles that take a counter-force
 ROOM = 4.0  # cells from a body to its own image
 RESERVED = re.compile(r"all|bodies|solutes|suspended|fluid(-\d+)?")  # names of other particles
 LONGEST_PATH = 0.35  # cells in a timestep: the engine's lists of gaps hold so far
+MOST_SPEEDS = 4.0  # thermal velocities: a body has more in one of 16,000 steps
 MOST_SWING = math.pi  # radians of a trap in a timestep
 THIN_BODY = 2.0  # cells across, below which flow around it is not resolved
 RADII = ("radius", "half_length")
@@ -282,6 +283,12 @@ def _fast(case: Case, kind: Body) -> Iterator[str]:
                     f"start.{name}[#{i}] = {show(row)}: it moves by {path:.3g} cells in a "
                     f"timestep; {least} slower"
                 )
+    thermal = MOST_SPEEDS * math.sqrt(kT / mass) * dt
+    if thermal > LONGEST_PATH and gaps and any(free):
+        yield (
+            f"mass = {mass:.4g}: at {MOST_SPEEDS:g} thermal velocities it moves by {thermal:.3g} "
+            f"cells in a timestep; {least} heavier"
+        )
     force = np.array(kind.force or 0.0) * (1.0 if kind.frame == "body" else free)
     turn = kind.torque if isinstance(kind.torque, tuple) else (kind.torque or 0.0,)
     for name, size, per in (

@@ -16,6 +16,7 @@ from mesokit.method.mpcd.start.body_room import (
     Apart,
     deepest_in_wall,
     free_places,
+    nearest,
     open_lengths,
     overlap,
     tree_of,
@@ -134,7 +135,11 @@ def _require_room(case: Case, places: Floats, turns: Floats) -> None:
     if met is not None:
         (first, i), (last, j) = map(key, met)
         of = "" if first == last else f" of bodies[#{first}]"
-        raise CaseError(f"{named(last, j)} overlaps body {i}{of}")
+        one, other = case.bodies[first - 1], case.bodies[last - 1]
+        d, least = case.box.dimension, nearest(one, other)
+        balls = least and one.solid(d).ball and other.solid(d).ball
+        near = f", or is nearer than {least:.2g} cells to it" if balls else ""
+        raise CaseError(f"{named(last, j)} overlaps body {i}{of}{near}")
     deep = deepest_in_wall(case, places, turns) if case.walls else None
     if deep is not None:
         raise CaseError(f"{named(*key(deep[0]))} is in a wall, about {deep[1]:.2g} deep")

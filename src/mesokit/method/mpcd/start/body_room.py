@@ -32,6 +32,7 @@ Ids = NDArray[np.int64]
 TRIES = 20_000  # places that are drawn for a body before there is no room
 MOST_DRAWS = 5_000_000  # for all bodies of a kind
 TOUCH = 1e-6  # cells: surfaces that are nearer overlap
+NEAREST = 0.3  # of the range of a gap law: 10^6 kT nearer than that, and the first step flings them
 PROJECTIONS = 200
 FINE = 0.25  # cells between places on a surface that is tried against walls
 SHELLS = (1.0, 0.7, 0.4, 0.1)  # smaller surfaces within it, for walls that lie inside
@@ -127,6 +128,8 @@ def overlap(case: Case, places: Floats, turns: Floats) -> tuple[int, int] | None
     trees = [tree_of(places[some], period) for some in rows]
     for a, b in itertools.combinations_with_replacement(range(len(solids)), 2):
         reach = solids[a].radius + solids[b].radius
+        if solids[a].ball and solids[b].ball:
+            reach += nearest(case.bodies[a], case.bodies[b])
         near = trees[a].sparse_distance_matrix(trees[b], reach, output_type="ndarray")
         if a == b:
             near = near[near["i"] < near["j"]]
@@ -141,6 +144,12 @@ def overlap(case: Case, places: Floats, turns: Floats) -> tuple[int, int] | None
             first = np.lexsort((j[bad], i[bad]))[0]
             return int(i[bad][first]), int(j[bad][first])
     return None
+
+
+def nearest(one: Any, other: Any) -> float:
+    """The gap below which two balls do not start."""
+    ranges = [kind.interaction.range for kind in (one, other) if kind.interaction.depth]
+    return NEAREST * max(ranges, default=0.0)
 
 
 def _rows(case: Case) -> list[slice]:
