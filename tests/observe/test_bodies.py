@@ -460,3 +460,30 @@ def test_a_correlation_twice_as_large_as_memory_has_that_ratio_to_it():
     begin, end = of.of.memory_holds()
     used = memory[(time >= begin) & (time <= end)]
     assert ratio.error == pytest.approx(1e-7 * np.sqrt(40 / (used**2).sum()), rel=0.3)
+
+
+@pytest.mark.parametrize(
+    ("keys", "places", "angles"),
+    [
+        ({}, "", ""),
+        ({"force": (1.0, 0.0, 0.0), "counter_force": True}, "the drift is in it", ""),
+        ({"torque": (0.0, 0.0, 2.0)}, "", "the drift is in it"),
+        ({"swim": Squirming(B1=0.1)}, "swimming is in it", ""),
+    ],
+)
+def test_a_displacement_says_what_moves_bodies_besides(keys, places, angles):
+    of = followed(one_sphere(**keys), "body-displacement")
+    assert (of.carried(turns=False), of.carried(turns=True)) == (places, angles)
+
+
+def test_a_drift_stands_beside_the_diffusion_coefficients():
+    case = one_sphere(force=(1.0, 0.0, 0.0), counter_force=True)
+    moved = BodyDisplacement(max_lag=20).accumulator(case)
+    kept = BodyCorrelation(max_lag=20).accumulator(case)
+    random = np.random.default_rng(2).normal(size=(90, 3))
+    places = np.cumsum(random + 0.1, axis=0)
+    for i in range(len(places)):
+        moved.origins.add(places[i : i + 1], lambda old, new: ((new - old) ** 2).sum(axis=1))
+        kept.origins.add(random[i : i + 1], lambda old, new: (new * old).sum(axis=1))
+    for result in (moved.result(), kept.result()):
+        assert "the drift is in it" in result["diffusion"].note

@@ -119,6 +119,13 @@ class Followed(NamedTuple):
         mobility, why = self.mobility()
         return (float(self.case.fluid.kT) * mobility, why) if self.thermal else (math.nan, "")
 
+    def carried(self, turns: bool) -> str:
+        """A note where a force, a torque or swimming moves them as well; "" where none does."""
+        if not turns and self.kind.swim is not None:
+            return "swimming is in it"
+        acts = np.any((self.kind.torque if turns else self.kind.force) or 0.0)
+        return "the drift is in it" if acts else ""
+
     def rotational_diffusion(self) -> tuple[float, str]:
         """Rotational diffusion coefficient."""
         mobility, why = self.rotational_mobility()

@@ -110,6 +110,7 @@ class BodyCorrelationAccumulator(BodiesInTime):
         expected, note = self.of.rotational_diffusion() if turns else self.of.diffusion()
         what = f"{'rotational ' * turns}diffusion coefficient up to {time[-1]:g} tau"
         unit = "1/tau" if turns else "a^2/tau"
+        note = joined(self.of.carried(turns), note)
         note = joined("" if turns else self.cut_short(float(time[-1])), note)
         yield Comparison(what, *kept.total(trapezoid), expected, unit, note)
         first_time, last_time = self.of.memory_holds()

@@ -73,6 +73,7 @@ class BodyDisplacementAccumulator(BodiesInTime):
             enough = math.ceil(2 * first / self.case.fluid.timestep)
             short = f"approximate: a lower bound at such short lags: max_lag = {enough} is enough"
             note = joined(GROWS if slope.growth and not slope.straight else "", note)
+            note = joined(self.of.carried(angles), note)
             note = joined(short if first > last / 2 else "", note)
             what = "rotational diffusion coefficient" if angles else "diffusion coefficient"
             unit = "1/tau" if angles else "a^2/tau"
