@@ -5,7 +5,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import wofz
 
 from mesokit.theory._check import positive
 from mesokit.theory.velocity_autocorrelation import _after_zero
@@ -80,6 +79,8 @@ def _decay(
     In partial fractions: that of 1/(sqrt(s) - r) is 1/sqrt(pi t) + r exp(r^2 t) erfc(-r sqrt(t)).
     The first terms cancel where the degrees differ by two or more.
     """
+    from scipy.special import wofz
+
     t = np.asarray(_after_zero(time) * viscosity / radius**2)[..., None]
     roots = np.roots(below)
     shares = np.polyval(above, roots) / np.polyval(np.polyder(below), roots)

@@ -16,7 +16,7 @@ from mesokit.method.mpcd.start.body_room import (
     Apart,
     deepest_in_wall,
     free_places,
-    nearest,
+    least_gap,
     open_lengths,
     overlap,
     tree_of,
@@ -136,7 +136,7 @@ def _require_room(case: Case, places: Floats, turns: Floats) -> None:
         (first, i), (last, j) = map(key, met)
         of = "" if first == last else f" of bodies[#{first}]"
         one, other = case.bodies[first - 1], case.bodies[last - 1]
-        d, least = case.box.dimension, nearest(one, other)
+        d, least = case.box.dimension, least_gap(one, other)
         balls = least and one.solid(d).ball and other.solid(d).ball
         near = f", or is nearer than {least:.2g} cells to it" if balls else ""
         raise CaseError(f"{named(last, j)} overlaps body {i}{of}{near}")

@@ -129,7 +129,7 @@ def overlap(case: Case, places: Floats, turns: Floats) -> tuple[int, int] | None
     for a, b in itertools.combinations_with_replacement(range(len(solids)), 2):
         reach = solids[a].radius + solids[b].radius
         if solids[a].ball and solids[b].ball:
-            reach += nearest(case.bodies[a], case.bodies[b])
+            reach += least_gap(case.bodies[a], case.bodies[b])
         near = trees[a].sparse_distance_matrix(trees[b], reach, output_type="ndarray")
         if a == b:
             near = near[near["i"] < near["j"]]
@@ -146,7 +146,7 @@ def overlap(case: Case, places: Floats, turns: Floats) -> tuple[int, int] | None
     return None
 
 
-def nearest(one: Any, other: Any) -> float:
+def least_gap(one: Any, other: Any) -> float:
     """The gap below which two balls do not start."""
     ranges = [kind.interaction.range for kind in (one, other) if kind.interaction.depth]
     return NEAREST * max(ranges, default=0.0)
