@@ -17,7 +17,7 @@ RADIUS, NU, RHO = 2.0, 0.4, 10.0
 DISPLACED = RHO * 4 / 3 * math.pi * RADIUS**3
 
 
-@pytest.mark.parametrize("heavy", [0.5, 1.0, 4.0])
+@pytest.mark.parametrize("heavy", [0.5, 0.625, 1.0, 4.0])  # 0.625: a double root
 def test_velocity_begins_with_half_of_the_displaced_fluid_and_integrates_to_D(heavy):
     mass = heavy * DISPLACED
     t = np.geomspace(1e-9, 1e7, 3000)

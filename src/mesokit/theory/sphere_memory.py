@@ -10,6 +10,7 @@ from mesokit.theory._check import positive
 from mesokit.theory.velocity_autocorrelation import _after_zero
 
 Array = NDArray[np.float64]
+NEARLY_ONE, APART = 1e-6, 1e-9  # slope of a polynomial at two roots; change of its coefficient
 
 
 def sphere_vacf(
@@ -83,6 +84,9 @@ def _decay(
 
     t = np.asarray(_after_zero(time) * viscosity / radius**2)[..., None]
     roots = np.roots(below)
-    shares = np.polyval(above, roots) / np.polyval(np.polyder(below), roots)
+    slopes = np.polyval(np.polyder(below), roots)
+    if abs(slopes).min() < NEARLY_ONE:  # two terms are large and cancel: roots slightly apart
+        return _decay(time, radius, viscosity, above, [below[0] * (1 + APART), *below[1:]])
+    shares = np.polyval(above, roots) / slopes
     found = (shares * roots * wofz(-1j * roots * np.sqrt(t))).sum(axis=-1)
     return np.asarray(viscosity / radius**2 * found.real)

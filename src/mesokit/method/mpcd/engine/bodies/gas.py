@@ -291,7 +291,7 @@ def place_batch(counter, work, keys, waiting, count, zero):
             s = added_scaled(uniform_place(counter, middle, keys[WAITING, n], draw), -1.0, centre)
             store_scratch(work, THERMAL * SCRATCH_ROW + n, s)
         still = 0
-        for n in range(left):  # without branches, as half of them would be a surprise
+        for n in range(left):  # no branches, as none could be predicted
             s, j = load_scratch(work, THERMAL * SCRATCH_ROW + n, zero), waiting[n]
             inside = dot(s, s) < work[BALL * SCRATCH_ROW + j] * work[BALL * SCRATCH_ROW + j]
             before = load_scratch(work, GAS_AT * SCRATCH_ROW + j, zero)

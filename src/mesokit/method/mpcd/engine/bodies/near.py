@@ -328,8 +328,8 @@ def cube_of(bodies, box, r):
 def list_of(bodies, cell, reach):
     """The list that has all bodies within reach of a place in a cell.
 
-    It is the number of the cell; EVERY_BODY; NO_BODIES; or one below it for each body, where that
-    is alone, so that no list need be fetched.
+    It is the number of the cell, EVERY_BODY, NO_BODIES, or NO_BODIES - 1 - i of body i alone: of
+    the last two no list is fetched.
     """
     one = np.int64(bodies.alone[cell])
     if reach >= LIST_REACH or (one == SEVERAL and bodies.near_count[cell] == EVERY_BODY):
