@@ -26,6 +26,7 @@ from moving_bodies import (
     case_of,
     gap_energy,
     kept,
+    mean_of_parts,
     met,
     ran,
     recorded,
@@ -290,13 +291,15 @@ def memory(page: Page) -> None:
             turn = 1 - (1 + 2 * math.cos(math.radians(130))) / 3
             back = 0.5 * turn * (1 - (1 - math.exp(-DENSITY)) / DENSITY)
             lost = by_hits + (lost - by_hits) * (1 - by_hits) - back * by_hits
-        rows.append(Comparison(f"{label}: <V^2>", *blocks(first[0]),
+        rows.append(Comparison(f"{label}: <V^2>", *mean_of_parts(first[0], 20),
                                theory.velocity_variance(mass, whole), "a^2/tau^2",
                                f"{case.run.steps} steps"))  # fmt: skip
         rows.append(Comparison(f"{label}: part of V that a step takes", *one_less(first), lost, "",
                                note))  # fmt: skip
         spin = kept_by(series[:, d:], (0, 1))
-        rows.append(Comparison(f"{label}: <Omega^2>", *blocks(spin[0]), 1 / inertia, "1/tau^2"))
+        rows.append(
+            Comparison(f"{label}: <Omega^2>", *mean_of_parts(spin[0], 20), 1 / inertia, "1/tau^2")
+        )
         if virtual == "none":
             lost = STEP * turned / inertia
             rows.append(Comparison(f"{label}: part of Omega that a step takes", *one_less(spin),
@@ -328,16 +331,10 @@ def kept_by(series: np.ndarray, lags: Any) -> list[np.ndarray]:
     return [(series[:n] * series[k : k + n]).mean(axis=1) for k in lags]
 
 
-def blocks(values: np.ndarray) -> tuple[float, float]:
-    """Mean and standard error, from 20 blocks."""
-    means = np.array([b.mean() for b in np.array_split(values, 20)])
-    return float(means.mean()), float(means.std(ddof=1) / math.sqrt(20))
-
-
 def one_less(pair: list[np.ndarray]) -> tuple[float, float]:
     """1 - C(1)/C(0), and its standard error from 20 blocks."""
     whole = pair[1].mean() / pair[0].mean()
-    scatter = blocks(pair[1] - whole * pair[0])[1] / pair[0].mean()
+    scatter = mean_of_parts(pair[1] - whole * pair[0], 20)[1] / pair[0].mean()
     return float(1 - whole), float(scatter)
 
 
@@ -361,10 +358,10 @@ def barometric(page: Page) -> None:
     weight /= weight.sum()
     note = f"{case.run.steps} steps"
     rows = [
-        Comparison("mean height", *mean_of(heights), float((y * weight).sum()), "a", note),
+        Comparison("mean height", *mean_of_parts(heights), float((y * weight).sum()), "a", note),
         Comparison(
             "mean square of the height about that mean",
-            *mean_of((heights - (y * weight).sum()) ** 2),
+            *mean_of_parts((heights - (y * weight).sum()) ** 2),
             float(((y - (y * weight).sum()) ** 2 * weight).sum()), "a^2", note,
         ),
     ]  # fmt: skip
@@ -383,12 +380,6 @@ def barometric(page: Page) -> None:
     axis.legend()
     page.figure(fig, "Heights of a heavy disk in bins of one cell. Error bars: one standard error, "
                 "of ten parts of the run.", "_heights")  # fmt: skip
-
-
-def mean_of(values: np.ndarray) -> tuple[float, float]:
-    """Mean, and its standard error from 10 blocks."""
-    means = [b.mean() for b in np.array_split(values, 10)]
-    return float(np.mean(means)), float(np.std(means, ddof=1) / math.sqrt(10))
 
 
 # ---------------------------------------------------------------- structure

@@ -25,6 +25,7 @@ from moving_bodies import (
     fluid,
     gap_energy,
     kept,
+    mean_of_parts,
     met,
     ran,
     recorded,
@@ -162,11 +163,11 @@ def large_spheres(page: Page) -> None:
     for name, gap in (("hard spheres at random", 0.0), ("kept apart", apart)):
         frames = kept(page, f"random-{gap:.2f}", f"{number} {side} {radius} {gap}",
                       lambda gap=gap: at_random(number, side, 2 * radius + gap))  # fmt: skip
-        value, error = in_parts(speed_of_places(frames, side, radius))
+        value, error = mean_of_parts(speed_of_places(frames, side, radius))
         what = f"Rotne and Prager, {name}: V/V0"
         rows.append(Comparison(what, value, error, math.nan if gap else law))
     met(page, f"settling, {rows[0].what}", rows[0], 5)
-    value, error = in_parts(speed_of_places(run, side, radius))
+    value, error = mean_of_parts(speed_of_places(run, side, radius))
     rows.append(Comparison("Rotne and Prager, places in the run: V/V0", value, error))
     free = wide_mobility(radius)
     c = drifts[0]
@@ -213,12 +214,6 @@ def speed_of_places(frames: np.ndarray, side: float, radius: float) -> np.ndarra
         for places in frames
     ]
     return alone + np.array(between)
-
-
-def in_parts(values: np.ndarray) -> tuple[float, float]:
-    """Mean, and its standard error from ten parts."""
-    means = [part.mean() for part in np.array_split(values, 10)]
-    return float(np.mean(means)), float(np.std(means, ddof=1) / math.sqrt(10))
 
 
 # ---------------------------------------------------------------- weak forces

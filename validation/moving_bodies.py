@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections.abc import Callable
 from typing import Any
@@ -158,6 +159,12 @@ def share_of(rule: str, d: int) -> float:
     """The share of the viscosity that does not conserve angular momentum."""
     known = coefficients(rule, d)
     return 0.0 if "+a" in rule else known.viscosity_collisional / known.viscosity
+
+
+def mean_of_parts(values: np.ndarray, parts: int = 10) -> tuple[float, float]:
+    """Mean of a series, and its standard error from so many parts of it."""
+    means = [part.mean() for part in np.array_split(values, parts)]
+    return float(np.mean(means)), float(np.std(means, ddof=1) / math.sqrt(parts))
 
 
 def gap_energy(gap: np.ndarray) -> np.ndarray:

@@ -161,7 +161,7 @@ class Followed(NamedTuple):
         return found
 
     def memory_holds(self) -> tuple[float, float]:
-        """From when, R^2/nu, and until when, L^2/(4 pi^2 nu), that is compared with."""
+        """The first and the last time of the comparison: R^2/nu and L^2/(4 pi^2 nu)."""
         known, coefficients = self.alone_in_a_cube(), setting.solvent(self.case)
         if known is None or coefficients is None:
             return math.inf, 0.0
