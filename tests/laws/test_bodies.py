@@ -100,6 +100,8 @@ DRIVEN = (
     body("disk", 2, force=(40, 0), frame="body", counter=CounterForce(at=(-4, 0))),
     body("rectangle", 2, torque=80, counter=CounterForce(shell=1.5)),
 )
+# A torque too small to count: of the same compiled kind as those.
+IDLE = {"torque": 1e-30, "counter": CounterForce(shell=1.5)}
 # All of them are compiled for other tests too
 SHEARED = {"collision": SRDPlusA(angle=90), "thermostat": MaxwellBoltzmann()}
 KINDS = {
@@ -164,7 +166,7 @@ def test_a_start_is_at_rest_as_a_whole(more, along):
 def test_what_is_fixed_does_not_go_with_a_shear_flow():
     """Near the end of the box, where the flow is fastest."""
     there = BodyStart(rule="given", positions=[[13, 21]])
-    still = body("disk", 2, start=there, fixed=("x", "y", "orientation"))
+    still = body("disk", 2, start=there, fixed=("x", "y", "orientation"), **IDLE)
     fluid = make_fluid(ROOM[2], bodies=[still], shear_rate=0.05, **FAST | SHEARED)
     fluid.advance(20)
     assert fluid.bodies.places().tolist() == [[13, 21]]
@@ -177,7 +179,7 @@ def test_lists_under_shear_hold_for_a_body_that_the_flow_does_not_carry():
     The lists of bodies that go with the flow are made anew for their own paths.
     """
     at_rest = BodyStart(rule="given", positions=[[13, 23.5]], velocities=[[0, 0]], spins=[[0]])
-    disk = body("disk", 2, start=at_rest, mass=1e9)
+    disk = body("disk", 2, start=at_rest, mass=1e9, **IDLE)
     case = make_case(ROOM[2], bodies=[disk], shear_rate=0.05, timestep=0.083, **SHEARED)
     kept, anew = CPU(case, 1), CPU(case, 1)
     start(kept)
@@ -223,7 +225,7 @@ def test_a_body_in_shear_turns_with_the_fluid():
     """At half of the shear rate, with a rule that conserves angular momentum."""
     rate = 0.06
     fluid = make_fluid(
-        (20, 20), bodies=[body("disk", 2)], shear_rate=rate, timestep=0.05, **SHEARED
+        (20, 20), bodies=[body("disk", 2, **IDLE)], shear_rate=rate, timestep=0.05, **SHEARED
     )  # fmt: skip
     fluid.advance(400)
     angles = []
