@@ -80,7 +80,7 @@ FILES = {
         "bodies[#1].counter_force = 'yes': expected true or false",
     SPACE + BALL + "counter_force = 1\n": "bodies[#1].counter_force = 1: expected true or false",
     SPACE + BALL + "mass = 300\ndensity = 3\n":
-        "bodies[#1].density: not with mass; give one of them",
+        "bodies[#1].density = 3: not with mass = 300; give one of them",
     SPACE + BALL + "interaction = false\n": "bodies[#1].interaction = false: expected a table",
     SPACE + BALL + "interaction = { range = 0.1 }\n":
         "bodies[#1].interaction.range = 0.1: expected a number of at least 0.25",
@@ -255,27 +255,41 @@ CASES = {
     # sizes
     "a large sphere": (
         3, [SphereBody(radius=6.5)], {}, "bodies[#1].radius = 6.5: its images may meet, for it is "
-        "13 long; expected at most 12 in a box of 16 along x",
+        "13 long; expected a length of at most 12 in a box of 16 along x",
     ),
     "a long rod": (
         2, [CapsuleBody(length=14, radius=1)], {}, "bodies[#1].length = 14: its images may meet, "
-        "for it is 14 long; expected at most 12 in a box of 16 along x",
+        "for it is 14 long; expected a length of at most 12 in a box of 16 along x",
     ),
     "a long spheroid": (
         3, [SpheroidBody(half_length=7, radius=2)], {}, "bodies[#1].half_length = 7: its images "
-        "may meet, for it is 14 long; expected at most 12 in a box of 16 along x",
+        "may meet, for it is 14 long; expected a length of at most 12 in a box of 16 along x",
     ),
     "a wide spheroid": (
         3, [SpheroidBody(half_length=2, radius=7)], {}, "bodies[#1].radius = 7: its images may "
-        "meet, for it is 14 long; expected at most 12 in a box of 16 along x",
+        "meet, for it is 14 long; expected a length of at most 12 in a box of 16 along x",
     ),
     "a large rectangle between plates": (
         2, [RectangleBody(size=[12, 5])], {"walls": [Plates("x")]}, "bodies[#1].size = [12, 5]: "
-        "its images may meet, for it is 13 long; expected at most 12 in a box of 16 along y",
+        "its images may meet, for it is 13 long; expected a length of at most 12 in a box of 16 "
+        "along y",
     ),
     "a large union": (
         2, [UnionBody(parts=[Disk([0, 0], 2), Disk([10, 0], 2)])], {}, "bodies[#1].parts: its "
-        "images may meet, for it is 14 long; expected at most 12 in a box of 16 along x",
+        "images may meet, for it is 14 long; expected a length of at most 12 in a box of 16 along "
+        "x",
+    ),
+    "a part far away": (
+        2, [UnionBody(parts=[Disk([0, 0], 2), Disk([1e300, 0], 2)])], {}, "bodies[#1].parts[#2]."
+        "centre = [1e+300, 0]: expected numbers of at most 1e+06",
+    ),
+    "a sphere without a volume": (
+        3, [SphereBody(radius=1e300)], {}, "bodies[#1].radius = 1e+300: it is 2e+300 long; "
+        "expected a length of at most 1e+06",
+    ),
+    "a union without a volume": (
+        2, [UnionBody(parts=[Disk([0, 0], 1e300)])], {}, "bodies[#1].parts: it is 2e+300 long; "
+        "expected a length of at most 1e+06",
     ),
     "a small sphere": (
         3, [SPHERE, SphereBody(radius=0.5)], {}, "bodies[#2].radius = 0.5: it is 1 cells "
@@ -415,6 +429,11 @@ CASES = {
         2, [EllipseBody(size=[6, 4], start=BodyStart(spins=[[2]]))], {},
         "bodies[#1].start.spins[#1] = [2]: it moves by 0.6 cells in a timestep; expected at most "
         "0.35: a shorter fluid.timestep, or slower",
+    ),
+    "a fast turn of a disk without gaps": (
+        2, [DiskBody(radius=3, start=BodyStart(spins=[[2]]), interaction=GapPotential(depth=0))],
+        {}, "bodies[#1].start.spins[#1] = [2]: it moves by 0.6 cells in a timestep; expected at "
+        "most 0.35: a shorter fluid.timestep, or slower",
     ),
     "a strong force": (
         2, [DiskBody(radius=3, mass=200, force=[1e6, 0])], {},

@@ -222,7 +222,12 @@ class Body(ABC):
         le=1e9,
     )
     mass: float | None = option(
-        default=None, doc="mass of the body, instead of a density", kw_only=True, unit="m", gt=0
+        default=None,
+        doc="mass of the body, instead of a density",
+        kw_only=True,
+        unit="m",
+        gt=0,
+        le=1e15,
     )
     surface: Literal["no-slip", "slip"] = option(
         default="no-slip",
@@ -285,7 +290,8 @@ class Body(ABC):
 
     def __post_init__(self) -> None:
         if self.mass is not None and self.density is not None:
-            raise ValueError("density: not with mass; give one of them")
+            given = f"density = {show(self.density)}"
+            raise ValueError(f"{given}: not with mass = {show(self.mass)}; give one of them")
         if self.hinge is not None and not any(self.hinge):
             raise ValueError(f"hinge = {show(self.hinge)}: expected a vector other than 0")
         if self.hinge is not None and "orientation" in self.fixed:

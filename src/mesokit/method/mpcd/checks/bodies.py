@@ -9,6 +9,7 @@ import numpy as np
 
 from mesokit.case.case import Case
 from mesokit.case.component import name_of, one_of, show, tag_of
+from mesokit.geometry.primitive import PRIMITIVES
 from mesokit.geometry.shape_protocol import Movable, closed_axes
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.body.inertia import is_inside
@@ -27,6 +28,7 @@ RESERVED = re.compile(r"all|bodies|solutes|suspended|fluid(-\d+)?")  # names of 
 LONGEST_PATH = 0.35  # cells in a timestep: the engine's lists of gaps hold so far
 MOST_SPEEDS = 4.0  # thermal velocities: a body has more in one of 16,000 steps
 MOST_SWING = math.pi  # radians of a trap in a timestep
+MOST_LENGTH = 1e6  # cells
 THIN_BODY = 2.0  # cells across, below which flow around it is not resolved
 RADII = ("radius", "half_length")
 SIZES = ("radius", "half_length", "length", "size", "parts")  # keys that say how large one is
@@ -141,6 +143,8 @@ def _shape(case: Case, kind: Body) -> Iterator[str]:
         for name, vector in part.vectors().items():
             if len(vector) != d:
                 yield f"{key}.{name} = {show(vector)}: expected {_numbers(d)}"
+            if max(map(abs, vector)) > MOST_LENGTH:
+                yield f"{key}.{name} = {show(vector)}: expected numbers of at most {MOST_LENGTH:g}"
         if not moves(part):
             yield (
                 f"{key}.shape = {show(name_of(part))}: not part of a body that moves; expected "
@@ -227,13 +231,19 @@ def _rows(case: Case, kind: Body) -> Iterator[str]:
 def _size(case: Case, kind: Body) -> Iterator[str]:
     """Room between a body and its own images; a mass that the fluid can push."""
     d, fluid = case.box.dimension, case.fluid
+    half = max(PRIMITIVES[part.code].extent(part.numbers) for (part,) in kind.region())
+    if not half < MOST_LENGTH:  # its volume might be no number
+        yield (
+            f"{_said(kind, half)}: it is {2.0 * half:.4g} long; expected a length of at most "
+            f"{MOST_LENGTH:g}"
+        )
     solid, closed = kind.solid(d), closed_axes(case.walls)
     said = _said(kind, solid.radius)
     for axis, length in zip(case.box.axes, case.box.size, strict=True):
         if axis not in closed and 2.0 * solid.radius + ROOM > length:
             yield (
                 f"{said}: its images may meet, for it is {2.0 * solid.radius:.4g} long; expected "
-                f"at most {length - ROOM:g} in a box of {length:g} along {axis}"
+                f"a length of at most {length - ROOM:g} in a box of {length:g} along {axis}"
             )
     mass = kind.mass_in(d, fluid.density * fluid.mass)
     if mass < LEAST_MASS * fluid.mass:
@@ -274,11 +284,12 @@ def _fast(case: Case, kind: Body) -> Iterator[str]:
     free = [axis not in kind.fixed for axis in case.box.axes]
     gaps = kind.interaction.depth > 0
     least = f"expected at most {LONGEST_PATH:g}: a shorter fluid.timestep, or"
-    for name, arm in (("velocities", 1.0), ("spins", 0.0 if solid.ball else solid.radius)):
+    # A surface that turns faster would throw the fluid out of its cells, with gaps or without.
+    for name, arm, limited in (("velocities", 1.0, gaps), ("spins", solid.radius, True)):
         rows = getattr(kind.start, name)
         for i, row in enumerate(() if rows is None or isinstance(rows, str) else rows, start=1):
             path = math.hypot(*row) * arm * dt
-            if path > LONGEST_PATH and gaps:
+            if path > LONGEST_PATH and limited:
                 yield (
                     f"start.{name}[#{i}] = {show(row)}: it moves by {path:.3g} cells in a "
                     f"timestep; {least} slower"
@@ -292,7 +303,7 @@ def _fast(case: Case, kind: Body) -> Iterator[str]:
     force = np.array(kind.force or 0.0) * (1.0 if kind.frame == "body" else free)
     turn = kind.torque if isinstance(kind.torque, tuple) else (kind.torque or 0.0,)
     for name, size, per in (
-        ("force", float(np.linalg.norm(force)), mass),
+        ("force", math.hypot(*np.atleast_1d(force)), mass),
         ("torque", math.hypot(*turn), inertia / solid.radius),
     ):
         path = size / per * dt**2
