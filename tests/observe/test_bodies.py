@@ -266,18 +266,18 @@ def test_equipartition_of_bodies_that_are_not_free():
 
 
 @pytest.mark.parametrize(
-    ("collision", "virtual", "slip", "source"),
+    ("collision", "virtual", "slips", "source"),
     [
-        (ATPlusA(), "fill", 0.075, "balls that turn"),
-        (SRDPlusA(angle=90), "fill", 0.075, "balls that turn"),
-        (ATPlusA(), "none", 1.32, "plates in SRD"),
-        (SRD(angle=130), "fill", 0.22, "plates in SRD"),
+        (ATPlusA(), "fill", (0.158, 0.075, 0.040), "balls that turn"),
+        (SRDPlusA(angle=90), "fill", (0.158, 0.075, 0.040), "balls that turn"),
+        (ATPlusA(), "none", (8.25, 1.32, 0.070), "plates in SRD"),
+        (SRD(angle=130), "fill", (0.353, 0.22, 0.117), "plates in SRD"),
     ],
 )
-def test_the_slip_length_is_that_of_such_rules(collision, virtual, slip, source):
-    """At a mean free path of 0.1; with another timestep all follow the same line."""
+def test_the_slip_length_is_that_of_such_rules(collision, virtual, slips, source):
+    """At mean free paths of 0.02, 0.1 and 0.5; between them by a line of logarithms."""
     of = []
-    for step in (0.1, 0.3):
+    for step in (0.02, 0.1, 0.3, 0.5):
         case = Case(
             run=Run(40, seed=3),
             box=Box([14, 14]),
@@ -285,10 +285,10 @@ def test_the_slip_length_is_that_of_such_rules(collision, virtual, slip, source)
             bodies=(DiskBody(radius=3, virtual=virtual),),
         )
         of.append(followed(case, "this").slip)
-    assert of[0][0] == pytest.approx(slip) and source in of[0][1]
-    line = np.log(3) / np.log(5)
-    per_path = {"fill": 0.117 / 0.220, "none": 0.070 / 1.320}[virtual]
-    assert of[1][0] == pytest.approx(slip * per_path**line)
+    assert [of[i][0] for i in (0, 1, 3)] == pytest.approx(slips)
+    assert all(source in note for _, note in of)
+    part = np.log(3) / np.log(5)
+    assert of[2][0] == pytest.approx(slips[1] ** (1 - part) * slips[2] ** part)
 
 
 def test_motion_that_is_not_thermal_alone_is_named():

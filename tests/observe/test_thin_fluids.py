@@ -13,6 +13,7 @@ from mesokit import (
     Plates,
     Run,
     Simulation,
+    SRDPlusA,
     Stress,
     Surface,
     TransverseModes,
@@ -90,3 +91,16 @@ def test_long_flights_slip_along_plates(size, timestep, slips):
     rate = next(c for c in accumulator.result().comparisons if c.what.startswith("flow rate"))
     assert rate.approximate == slips == setting.slipping(given).startswith("approximate: slip")
     assert rate.expected > 0
+
+
+@pytest.mark.parametrize(
+    ("timestep", "off"),
+    [(0.02, "so short flights take 2 to 7 % off"), (0.05, "so short flights take 1 to 3 % off")],
+)
+def test_short_flights_lower_the_viscosity(timestep, off):
+    """Where particles meet again and again, by as much as was measured, and where that is seen."""
+    fluid = case(10, [], timestep=timestep, collision=SRDPlusA(angle=90))
+    assert setting.chaos_is_off(fluid, 1.8, 0.01) == f"approximate: molecular chaos; {off}"
+    assert setting.chaos_is_off(fluid, 1.8, 0.5) == ""
+    longer = case(10, [], timestep=0.1, collision=SRDPlusA(angle=90))
+    assert "flights" not in setting.chaos_is_off(longer, 0.4, 0.001)

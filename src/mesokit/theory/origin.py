@@ -52,7 +52,8 @@ def origins(
             source("(1)", published), f"{full}, {short} 10 to 20 % low, in 2D 20 to 70 %{once}"
         ),
         "viscosity_collisional": Origin(
-            source("(3)", published), f"{full}, {short} 1 to 2 % high, in 2D with +a 10 %"
+            source("(3)", published),
+            f"{full}, {short} 1 to 2 % high, in 2D with +a 10 %; at 0.02 2 to 7 %",
         ),
         "dynamic_viscosity": Origin("definition, density m times kinematic", "as the viscosity"),
         "diffusion": Origin(source("(2)", published), f"{full}, {short} 10 to 18 % low{once}"),
