@@ -16,7 +16,7 @@ NAMES = (
     "bonded_modes", "viscoelastic", "polymer_diffusion", "colloids", "pooled_runs",
     "random_numbers", "demix", "flocks", "hard_spheres", "soft_spheres", "kinetic_monte_carlo",
     "contact_dynamics", "liquid", "freezing", "error_bars", "bodies",
-    "bodies_in_flow", "bodies_more_flow", "bodies_long_times",
+    "bodies_in_flow", "bodies_more_flow", "bodies_slow_flow", "bodies_long_times",
 )  # fmt: skip
 
 

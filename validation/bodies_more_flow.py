@@ -373,7 +373,10 @@ def make(parts: Sequence[str] = tuple(PARTS)) -> int:
     """Write the page, of all parts or those named."""
     page = Page("bodies_more_flow", "Bodies in a flow: lattices, weak forces, 3D")
     page.text(PREFACE)
-    page.text("It goes on where [bodies in flow](bodies_in_flow.md) left off.")
+    page.text(
+        "It goes on where [bodies in flow](bodies_in_flow.md) left off. What is open here: [in a "
+        "slow flow](bodies_slow_flow.md)."
+    )
     for name in parts:
         PARTS[name](page)
     return page.write()
