@@ -53,7 +53,7 @@ def origins(
         ),
         "viscosity_collisional": Origin(
             source("(3)", published),
-            f"{full}, {short} 1 to 2 % high, in 2D with +a 10 %; at 0.02 2 to 7 %",
+            f"{full}, {short} 1 to 2 % high, in 2D with +a 10 %; at 0.02 up to 7 %",
         ),
         "dynamic_viscosity": Origin("definition, density m times kinematic", "as the viscosity"),
         "diffusion": Origin(source("(2)", published), f"{full}, {short} 10 to 18 % low{once}"),

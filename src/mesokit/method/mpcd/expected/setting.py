@@ -109,23 +109,22 @@ def loop(case: Case) -> float:
     return raised / nu - 1.0
 
 
-# Mean free paths below which particles that meet again and again lower a viscosity, the largest
-# part that was measured, and the span over rules and dimensions (validation/viscosity_rules.py).
-SHORT_FLIGHTS = ((0.03, 0.07, "2 to 7 %"), (0.07, 0.03, "1 to 3 %"))
+# Mean free paths below which particles that meet again and again lower a viscosity, and the largest
+# part that was measured, over rules and dimensions (validation/viscosity_rules.py).
+SHORT_FLIGHTS = ((0.03, 0.07), (0.07, 0.03))
 
 
-def short_flights(case: Case) -> tuple[float, str]:
-    """The largest part that so short flights take off a viscosity, and the span as a text."""
-    path = mean_free_path(case)
-    return next(((part, span) for most, part, span in SHORT_FLIGHTS if path < most), (0.0, ""))
+def short_flights(case: Case) -> float:
+    """The largest part that so short flights take off a viscosity."""
+    return next((part for path, part in SHORT_FLIGHTS if mean_free_path(case) < path), 0.0)
 
 
 def chaos_is_off(case: Case, expected: float, error: float) -> str:
     """A note where a viscosity of molecular chaos is known to be off by more than an error bar: by
     fluctuations, which raise it, or by short flights; "" elsewhere."""
-    part, span = short_flights(case)
+    part = short_flights(case)
     if part * abs(expected) > error:
-        return f"approximate: molecular chaos; so short flights take {span} off"
+        return f"approximate: molecular chaos; so short flights take up to {100 * part:.0f} % off"
     part = loop(case)
     if not part * abs(expected) > error:
         return ""

@@ -179,11 +179,11 @@ class StressAccumulator(TensorAccumulator):
         rate = case.box.steady_rate
         if rate:
             scale = setting.mass_density(case) * rate
-            less = setting.short_flights(case)[1] or "0 to 3 %"
+            less = 100 * (setting.short_flights(case) or 0.03)
             notes = (
                 setting.caveat(case),
                 setting.chaos(case, f"short flights carry {CARRIED[case.box.dimension]} more"),
-                setting.chaos(case, f"cells hand over {less} less where flights are short"),
+                setting.chaos(case, f"in short flights cells hand over up to {less:.0f} % less"),
             )
             for part, name, note in zip(
                 (-1, 0, 1), ("viscosity", "kinetic part", "collisional part"), notes, strict=True
