@@ -27,7 +27,7 @@ from mesokit import (
     theory,
 )
 from mesokit.method.mpcd.body.disk import DiskBody
-from mesokit.method.mpcd.body.protocol import BodyStart, BodyTrap, Squirming
+from mesokit.method.mpcd.body.protocol import BodyStart, BodyTrap, CounterForce, Squirming
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.bodies import every_kind, followed
 from mesokit.report.figures import plot
@@ -287,8 +287,28 @@ def test_the_slip_length_is_that_of_such_rules(collision, virtual, slips, source
         of.append(followed(case, "this").slip)
     assert [of[i][0] for i in (0, 1, 3)] == pytest.approx(slips)
     assert all(source in note for _, note in of)
+    notes = [note for _, note in of]
+    assert notes[0].startswith("approximate: short flights take up to 7 % off a viscosity; with")
+    assert notes[1].startswith("with a slip length of")
+    assert notes[3].startswith("approximate: no slip was") == (source == "balls that turn")
     part = np.log(3) / np.log(5)
     assert of[2][0] == pytest.approx(slips[1] ** (1 - part) * slips[2] ** part)
+
+
+def test_a_body_with_a_counter_force_swims_as_fast_as_the_dumbbell_of_theory():
+    """Beside its own axis alone, and with a note where inertia counts."""
+    known = []
+    for force, at in (((0.5, 0.0), (-4.0, 0.0)), ((20.0, 0.0), (4.0, 0.0)), ((2, 1), (-4, 0))):
+        swimmer = DiskBody(radius=2, force=force, frame="body", counter=CounterForce(at=at))
+        case = Case(run=Run(40), box=Box([20, 20]), fluid=Fluid(density=10, timestep=0.1,
+                    collision=ATPlusA()), bodies=(swimmer,))  # fmt: skip
+        known.append(followed(case, "this").swimming_speed())
+    viscosity = 10 * theory.transport("at+a", 2, 10, 0.1).viscosity
+    speed = theory.dumbbell_speed(0.5, 2.0, 4.0, viscosity, 20, 2, slip=0.075)
+    assert known[0][0] == pytest.approx(speed) and known[0][1].startswith("with a slip length")
+    assert known[1][0] == pytest.approx(40 * speed)
+    assert known[1][1].startswith("approximate: without inertia, but U d/nu is")
+    assert np.isnan(known[2][0])
 
 
 def test_motion_that_is_not_thermal_alone_is_named():

@@ -44,6 +44,7 @@ from mesokit.theory.drawn_body import sphere_friction_in_cube as sphere_friction
 from mesokit.theory.dumbbell_shear import dumbbell_viscosity as dumbbell_viscosity
 from mesokit.theory.dumbbell_shear import fene_p_thinning as fene_p_thinning
 from mesokit.theory.dumbbell_shear import pair_friction as pair_friction
+from mesokit.theory.dumbbell_swimmer import dumbbell_speed as dumbbell_speed
 from mesokit.theory.ellipsoid_friction import EllipsoidFriction as EllipsoidFriction
 from mesokit.theory.ellipsoid_friction import depolarisation as depolarisation
 from mesokit.theory.ellipsoid_friction import ellipsoid_friction as ellipsoid_friction

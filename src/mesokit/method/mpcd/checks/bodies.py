@@ -28,7 +28,7 @@ RESERVED = re.compile(r"all|bodies|solutes|suspended|fluid(-\d+)?")  # names of 
 LONGEST_PATH = 0.35  # cells in a timestep: the engine's lists of gaps hold so far
 MOST_SPEEDS = 4.0  # thermal velocities: a body has more in one of 16,000 steps
 MOST_SWING = math.pi  # radians of a trap in a timestep
-MOST_LENGTH = 1e6  # cells
+LEAST_LENGTH, MOST_LENGTH = 1e-3, 1e6  # cells, half of that of a body
 THIN_BODY = 2.0  # cells across, below which flow around it is not resolved
 RADII = ("radius", "half_length")
 SIZES = ("radius", "half_length", "length", "size", "parts")  # keys that say how large one is
@@ -232,10 +232,10 @@ def _size(case: Case, kind: Body) -> Iterator[str]:
     """Room between a body and its own images; a mass that the fluid can push."""
     d, fluid = case.box.dimension, case.fluid
     half = max(PRIMITIVES[part.code].extent(part.numbers) for (part,) in kind.region())
-    if not half < MOST_LENGTH:  # its volume might be no number
+    if not LEAST_LENGTH < half < MOST_LENGTH:  # its volume might be no number
         yield (
-            f"{_said(kind, half)}: it is {2.0 * half:.4g} long; expected a length of at most "
-            f"{MOST_LENGTH:g}"
+            f"{_said(kind, half)}: it is {2.0 * half:.4g} long; expected a length from "
+            f"{2.0 * LEAST_LENGTH:g} to {2.0 * MOST_LENGTH:g}"
         )
     solid, closed = kind.solid(d), closed_axes(case.walls)
     said = _said(kind, solid.radius)
@@ -320,7 +320,8 @@ def _fast(case: Case, kind: Body) -> Iterator[str]:
         if swing > MOST_SWING:
             yield (
                 f"trap.{name} = {show(k)}: too stiff, it swings by {swing:.3g} rad in a timestep; "
-                f"expected at most {MOST_SWING:.3g}, or {k * (MOST_SWING / swing) ** 2:.3g}"
+                f"expected at most {MOST_SWING:.3g}, or {name} = "
+                f"{k * (MOST_SWING / swing) ** 2:.3g}"
             )
 
 

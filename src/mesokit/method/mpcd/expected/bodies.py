@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 KIND_OF_BODY = "which kind of bodies: name or number, from 1"
 WIDE = 0.45  # of the side of a box: radius of a disk up to which its friction is known
 SLENDER = 20.0  # longest rods whose friction is known, in diameters
+SLOW = 0.1  # largest Reynolds number of the distance at which inertia does not count
 ROUNDING = 1e-12  # of a moment of inertia
 
 
@@ -208,12 +209,27 @@ class Followed(NamedTuple):
         return 1.0 / theory.rotational_friction(radius, viscosity, d, length, slip, share), why
 
     def swimming_speed(self) -> tuple[float, str]:
-        """Speed of a squirmer along its own axis."""
+        """Speed of a squirmer, or of a body with a counter-force, along its own axis."""
         known, kind = self.alone_in_a_cube(), self.kind
-        if known is None or kind.swim is None or holds(self.case) or np.any(kind.force or 0.0):
+        if known is None or holds(self.case):
             return math.nan, ""
-        (radius, length, _), (slip, why) = known, self.slip
-        d = self.case.box.dimension
+        (radius, length, viscosity), (slip, why) = known, self.slip
+        d, force, beside = self.case.box.dimension, kind.force or (0.0,), kind.counter
+        if kind.swim is None and beside is not None and beside.at is not None:
+            aside = any(force[1:]) or any(beside.at[1:]) or self.mass != self.displaced
+            far, ball = abs(beside.at[0]), beside.radius
+            if aside or far < radius + ball:
+                return math.nan, ""
+            speed = theory.dumbbell_speed(
+                force[0], radius, far, viscosity, length, d, counter_radius=ball, slip=slip
+            )
+            reynolds = abs(speed) * far * fluid_mass_density(self.case) / viscosity
+            if reynolds > SLOW:
+                why = why.removeprefix("approximate: ")
+                why = f"approximate: without inertia, but U d/nu is {reynolds:.2g}; {why}"
+            return speed, why
+        if kind.swim is None or any(force):
+            return math.nan, ""
         speed, fraction = theory.squirmer_speed(kind.swim.B1, d), kind.solid(d).volume / length**d
         share = self.asymmetric_share
         return theory.squirmer_speed_in_box(speed, fraction, slip / radius, share), why
@@ -302,7 +318,12 @@ class Followed(NamedTuple):
             lengths, source = SLIP_OF_TURNING[place], "balls that turn"
         path = np.log(setting.mean_free_path(self.case))
         slip = float(np.exp(np.interp(path, np.log(PATHS), np.log(lengths))))
-        return slip, f"with a slip length of {slip:.2g} a, as of {source}"
+        why = f"with a slip length of {slip:.2g} a, as of {source}"
+        if part := setting.short_flights(self.case):
+            why = f"approximate: short flights take up to {100 * part:.0f} % off a viscosity; {why}"
+        elif lengths is SLIP_OF_TURNING.get(place) and path > np.log(LONGEST_TURNING):
+            why = f"approximate: no slip was measured at so long a mean free path; {why}"
+        return slip, why
 
 
 # Mean free paths, and slip lengths of plates in SRD that were measured there. In 2D those of 0.1
@@ -314,6 +335,7 @@ SLIP_LENGTHS = {
     (2, "fill"): (0.353, 0.220, 0.117),
     (2, "none"): (8.25, 1.320, 0.070),
 }
+LONGEST_TURNING = 0.15  # the longest mean free path near which that of balls was measured
 # With rules that conserve angular momentum, of spheres and disks that turn. At 0.02 of AT+a, with
 # the measured viscosity (docs/validation/bodies_slow_flow.md); at 0.1 the mean of two rules with
 # that of molecular chaos, and the speed of swimmers, which needs none, gives the same
