@@ -343,6 +343,11 @@ CASES = {
         for name in ("fluid", "fluid-2", "solutes", "all", "bodies")
     },
     # what moves them
+    "a sphere that tumbles too often": (
+        3, [SphereBody(radius=3, swim=Squirming(B1=0.1, tumble_rate=1e9))], {},
+        "bodies[#1].swim.tumble_rate = 1000000000: 1e+08 turns in a timestep; expected at most 1, "
+        "or 10",
+    ),
     "a spheroid that tumbles": (
         3, [SpheroidBody(half_length=4, radius=3, swim=Squirming(B1=1, tumble_rate=0.1))], {},
         "bodies[#1].swim.tumble_rate = 0.1: only of a sphere or a disk; others have no room to "

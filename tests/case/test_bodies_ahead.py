@@ -159,6 +159,16 @@ def test_a_warning(name):
     assert warnings_of(size, *bodies, **HELD | fluid | more) == [expected]
 
 
+def test_a_shear_faster_than_sound_is_warned_of():
+    """Also with bodies, beside which the fluid has no theory of its own."""
+    case = Case(
+        run=Run(10), box=Box([20, 20], shear_rate=0.5), fluid=Fluid(density=10, **HELD),
+        bodies=(DiskBody(radius=3),),
+    )  # fmt: skip
+    said = derive(case).warnings
+    assert any("of the speed of sound across a cell; keep it below 0.2" in one for one in said)
+
+
 @pytest.mark.parametrize("body", [
     DiskBody(radius=3, swim=Squirming(B1=0.1)), DiskBody(radius=3, torque=1),
     DiskBody(radius=3, force=[1, 0], counter_force=True),

@@ -341,8 +341,10 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 f"wall: surfaces move at Mach number {mach:.2g}: above 0.2 the fluid is "
                 "compressible; lower their velocity or rotation"
             )
-    if sheared and numbers.transport:
-        cell = case.box.largest_rate / numbers.transport.sound_speed
+    if sheared:
+        known = numbers.transport
+        sound = known.sound_speed if known else setting.sound_speed(case)
+        cell = case.box.largest_rate / sound
         if _above(cell, 0.2):
             yield (
                 f"{case.box.shear_key}: velocities differ by {cell:.2g} of the "
