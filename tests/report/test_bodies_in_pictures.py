@@ -132,6 +132,9 @@ def test_traces_are_drawn_on_both_sides_of_an_edge():
     np.testing.assert_allclose(pieces, [[[-1, 9], [1, 10]], [[15, 9], [17, 10]]])
     assert len(BodyFrames(case, frames, ("x", "y"), traces=5).at().traces) == 3
     assert len(BodyFrames(case, frames, ("x", "y"), traces=5).at(1.0).traces) == 1
+    drawn = picture(case, {}, frames, "bodies", traces=50.0)
+    said = " ".join(text.get_text() for text in reversed(drawn.texts))
+    assert f"their paths of ${frames.time[-1]:g}" in said, said
     lines = picture(case, {}, frames, "bodies", traces=2.0).axes[0].collections
     found = [c for c in lines if isinstance(c, mpl.collections.LineCollection)]
     assert [len(c.get_segments()) for c in found] == [3, 3]  # black over white

@@ -101,7 +101,8 @@ def picture(
     ]
     notes += [_few(case, panels, flows), when]
     if moving and bodies:
-        paths = f", their paths of {at(view.traces, 4, '')}" if view.traces else ""
+        length = min(view.traces or 0.0, bodies.time)
+        paths = f", their paths of {at(length, 4, '')}" if length else ""
         notes += [f"bodies at {at(bodies.time, 4)}{paths}", moving.where(kind == "bodies")]
     for spheres in filter(None, (flow.spheres for flow in flows)):
         notes += [f"at {at(spheres.time, 4)}", spheres.remark, spheres.note]

@@ -100,7 +100,7 @@ class CounterForce:
 
     def __post_init__(self) -> None:
         if self.at is None and self.shell == 0:
-            raise ValueError("at: missing; a counter needs at, shell or both")
+            raise ValueError("at: missing; a counter needs at, a shell above 0, or both")
 
     def volume(self, solid: Solid, dimension: int) -> float:
         """Of ball and shell, at most."""
