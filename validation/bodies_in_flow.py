@@ -377,7 +377,7 @@ def long_bodies(page: Page) -> None:
         "2.8373/(6 pi eta L) alone and without slip, which would add some per cent. Turning end "
         "over end is about a hinge; neither images nor slip are in its theory. The Reynolds number "
         "of the half length is about 1, where inertia slows a sphere by 6 % (two spheres, above). "
-        "With a third of the force the law holds (bodies_more_flow)."
+        "With a third of the force the law holds ([next page](bodies_more_flow.md))."
     )
     eta, rows = viscosity("at+a", 3), []
     bodies = (
@@ -543,15 +543,12 @@ def settling(page: Page) -> None:
         "a wide fluid, Stokes with the slip length of the page. To the measured speed is added "
         "what so few spheres lack (`settling_of_few`), with Ladd's viscosity at high frequency "
         "and S(0) of spheres that are as large as the gap law keeps them apart. Theory is (1 - "
-        "phi)^5 of hard spheres; exponents of 4.5 and 5.5 stand as a note. The law is not met. "
-        "One reason may be the gap law: it keeps these small spheres a fifth of a radius apart, "
-        "and spheres that stay apart settle more slowly. With the volume that it keeps, the same "
-        "law (the last number of the note) is what is measured at the lower two fractions, and "
-        "too low at the highest. Gaps below a cell, which the fluid does not resolve, are another. "
-        "A third of the force brings 18 spheres a little nearer: inertia is a small part. "
-        "One start for each fraction: the scatter of starts is not in the error bars. The reason "
-        "is on [the next page](bodies_more_flow.md): where the spheres are, which the gap law "
-        "changes, and to which (1 - phi)^5 with another volume does not do justice."
+        "phi)^5 of hard spheres; exponents of 4.5 and 5.5 stand as a note, and the same law with "
+        "the volume that the gap law keeps. The law is not met. Most of the lag is where the "
+        "spheres are: the gap law keeps these small ones a fifth of a radius apart, and spheres "
+        "that stay apart settle more slowly ([next page](bodies_more_flow.md), which has the speed "
+        "for their places). A third of the force brings 18 spheres a little nearer: inertia is a "
+        "small part. One start for each fraction: the scatter of starts is not in the error bars."
     )
     gaps = np.linspace(1e-3, 0.5, 500)
     apart = float((1 - np.exp(-gap_energy(gaps))).mean() * 0.5)
@@ -579,7 +576,7 @@ def settling(page: Page) -> None:
             f"Re {c.measured * force * radius / VISCOSITIES['at+a', 3][0]:.2f}; {raw:.3f} in this "
             f"box; {bounds[2]:.3f} to {bounds[1]:.3f}; exponent "
             f"{math.log(raw + few) / math.log(1 - phi):.2f}; {note}; "
-            f"{(1 - swollen * phi) ** 5:.3f}",
+            f"{(1 - swollen * phi) ** 5:.3f} with the gap law",
         ))  # fmt: skip
         met(page, rows[-1].what, rows[-1], 5)
         marks.append((phi, raw, raw + few, c.error / free))

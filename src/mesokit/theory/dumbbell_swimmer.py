@@ -33,7 +33,7 @@ def dumbbell_speed(
     `counter_radius` a of that ball; `slip` length b at the body, in the part of its own force
     alone. Raises ValueError for a value out of range and for a ball that overlaps the body.
     Source: H. Faxen, Ann. Phys. 68, 89 (1922), and derived in docs/theory.md. Valid for U d/nu well
-    below 1: inertia makes a pusher faster, by an eighth where U d/nu is 1.
+    below 1 in 3D, and below 0.1 in 2D: inertia makes a pusher faster, a puller slower.
 
     >>> round(dumbbell_speed(20, radius=2, distance=5, viscosity=4, box_length=24), 4)
     0.0575

@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 KIND_OF_BODY = "which kind of bodies: name or number, from 1"
 WIDE = 0.45  # of the side of a box: radius of a disk up to which its friction is known
 SLENDER = 20.0  # longest rods whose friction is known, in diameters
-SLOW = 0.1  # largest Reynolds number of the distance at which inertia does not count
+SLOW = {2: 0.01, 3: 0.1}  # largest U d/nu of a dumbbell at which inertia takes a few per cent
 ROUNDING = 1e-12  # of a moment of inertia
 
 
@@ -224,7 +224,7 @@ class Followed(NamedTuple):
                 force[0], radius, far, viscosity, length, d, counter_radius=ball, slip=slip
             )
             reynolds = abs(speed) * far * fluid_mass_density(self.case) / viscosity
-            if reynolds > SLOW:
+            if reynolds > SLOW[d]:
                 why = why.removeprefix("approximate: ")
                 why = f"approximate: without inertia, but U d/nu is {reynolds:.2g}; {why}"
             return speed, why
