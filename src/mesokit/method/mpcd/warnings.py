@@ -341,8 +341,9 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 f"wall: surfaces move at Mach number {mach:.2g}: above 0.2 the fluid is "
                 "compressible; lower their velocity or rotation"
             )
-    if sheared:
-        known = numbers.transport
+    history, known = case.box.history, numbers.transport
+    in_time = history is not None and not history.steady
+    if sheared and (known or not in_time):
         sound = known.sound_speed if known else setting.sound_speed(case)
         cell = case.box.largest_rate / sound
         if _above(cell, 0.2):
@@ -350,8 +351,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 f"{case.box.shear_key}: velocities differ by {cell:.2g} of the "
                 "speed of sound across a cell; keep it below 0.2"
             )
-    history = case.box.history
-    if history is not None and not history.steady:
+    if history is not None and in_time:
         faster = history.largest * case.box.size[1] / setting.sound_speed(case)
         if _above(faster, SHOCK):
             yield (
