@@ -214,15 +214,15 @@ def wave(page: Page) -> None:
     page.heading("Einstein viscosity by a driven wave")
     side, radius, length, often = 30, 2.0, 5e5, 20
     page.text(
-        "2D AT+a, disks of R = 2 in a square of side 30, at rest but for a force on fluid and "
-        "disks that is a sine across the flow. The viscosity is the force over the amplitude of "
-        "the flow, which is that of fluid and disks by volume; the table has its ratio to the same "
-        "without disks. It does not ask for `stress`. Theory is the first order in phi, as on the "
+        "A force that is a sine across the flow acts on 2D AT+a and on disks of R = 2, in a square "
+        "of side 30. The viscosity is the force over the amplitude of the flow, by volume of fluid "
+        "and disks. The table has its ratio to the same without disks. It does not ask for "
+        "`stress`. Theory is the first order in phi, as on the "
         "page of bodies in flow, where shear gave 2.01(17) and 2.17(8). The length of the wave "
         "changes it by less than 1 %, by the exact flow about one disk. The viscous fluid has a "
         "fourth of the Reynolds number, of the largest shear and R: inertia is not what raises the "
         "gain. To first order theory is too low: no suspension of rigid disks without slip has "
-        "less than (1 + phi)/(1 - phi) (Hashin 1965), and the note has that as a gain."
+        "less than (1 + phi)/(1 - phi) (Hashin 1965). The note has that as a gain."
     )
     k = 2 * math.pi / side
     reach = k * radius
@@ -330,10 +330,9 @@ def dumbbells(page: Page) -> None:
         "A sphere or disk of R = 2 under a force along its own axis, with the counter-force on the "
         f"fluid in a ball of radius 1 at {distance:g} behind it (a pusher) or ahead (a puller), "
         "AT+a, the viscous fluid. Theory is `dumbbell_speed` with the viscosity and slip length "
-        "above. To first order inertia makes a pusher as much faster as a puller slower, since the "
-        "flow of the counter-force goes with it: the mean of both is to be that of theory. At the "
-        "timestep 0.1, where U d/nu is 0.73, they swam at 0.0709(30) and 0.0525(33) in 3D, of "
-        "0.0589 without inertia (6000 steps)."
+        "above. To first order inertia makes a pusher as much faster as a puller slower. So the "
+        "mean of both is to be that of theory. At the timestep 0.1, where U d/nu is 0.73, they "
+        "swam at 0.0709(30) and 0.0525(33) in 3D (6000 steps). Theory without inertia is 0.0589."
     )
     rows = []
     for d, side, force, length in ((2, 30, 16.0, 2e5), (3, 16, 40.0, 4e4)):
@@ -444,11 +443,11 @@ def spread(page: Page) -> None:
     """Diffusion of a sphere."""
     page.heading("Diffusion of a sphere")
     page.text(
-        "R = 2 in a cube of side 12, AT+a, timestep 0.1: the case of [bodies](bodies.md) whose D, "
-        "0.00433(21), lies 2.8 standard errors above theory, four times as long and with another "
-        "seed. The mean of both by their error bars is not that of theory, and why is not known. "
-        "The mobility under a weak force is (two spheres, [bodies in flow](bodies_in_flow.md)); it "
-        "is that of a larger box, of side 18."
+        "R = 2 in a cube of side 12, AT+a, timestep 0.1, as on the page of [bodies](bodies.md). "
+        "There D, 0.00433(21), lies 2.8 standard errors above theory. This run is four times as "
+        "long and has another seed. The mean of both by their error bars is not that of theory, "
+        "and why is not known. The mobility under a weak force is, in a larger box of side 18 (two "
+        "spheres, [bodies in flow](bodies_in_flow.md))."
     )
     radius, side, eta, slip = 2.0, 12, viscosity(RULE, 3), SLIP[RULE, 3]
     case = case_of(

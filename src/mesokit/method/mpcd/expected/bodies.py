@@ -216,13 +216,13 @@ class Followed(NamedTuple):
         (radius, length, viscosity), (slip, why) = known, self.slip
         d, force, beside = self.case.box.dimension, kind.force or (0.0,), kind.counter
         if kind.swim is None and beside is not None and beside.at is not None:
-            aside = any(force[1:]) or any(beside.at[1:]) or self.mass != self.displaced
             far, ball = abs(beside.at[0]), beside.radius
-            if aside or far < radius + ball:
+            if any(force[1:]) or any(beside.at[1:]) or far < radius + ball:
                 return math.nan, ""
             speed = theory.dumbbell_speed(
                 force[0], radius, far, viscosity, length, d, counter_radius=ball, slip=slip
             )
+            speed *= 1.0 - (self.mass - self.displaced) / total_mass(self.case, self.all_moving)
             reynolds = abs(speed) * far * fluid_mass_density(self.case) / viscosity
             if reynolds > SLOW[d]:
                 why = why.removeprefix("approximate: ")
