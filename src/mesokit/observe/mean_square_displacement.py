@@ -113,13 +113,40 @@ def _square_distance(old: Array, new: Array) -> Array:
 
 class Slope(NamedTuple):
     """Slope and its standard error, the fitted line (n,), nan outside of its window, and whether
-    the curve is straight there; `growth` is by how much the slope changes in a decade of lags."""
+    the curve is straight there; `growth` is by how much the slope changes in a decade of lags, and
+    `row` (n,) the combination of the values of the curve that the slope is."""
 
     value: float
     error: float
     line: Array
     straight: bool
     growth: float
+    row: Array
+
+    def error_of_walks(self, time: Array, length: float, walks: int) -> float:
+        """The standard error, at least that of so many Brownian walks along an axis.
+
+        Walks that are few times as long as the lags have few parts that are independent, from whose
+        scatter no error is known. That of true walks follows from the overlap of displacements
+        (Qian, Sheetz and Elson, Biophys. J. 60, 910 (1991), for one lag): the covariance at lags
+        a <= b is 8 D^2 a^2 (b - a/3)/(length - b). It is a part r of the true slope, so that a
+        slope that is found may be r/(1 - r) of itself too small; infinite where r is 1.
+
+        Parameters
+        ----------
+        time: (n,) lags of the curve, ascending.
+        length: time over which the walks were followed.
+        walks: their number times that of axes.
+
+        >>> slope = Slope(2.0, 0.1, np.zeros(3), True, 0.0, np.array([-0.5, 0.0, 0.5]))
+        >>> lags = np.array([1.0, 2.0, 3.0])
+        >>> round(slope.error_of_walks(lags, 90.0, 12), 3), slope.error_of_walks(lags, 900.0, 12)
+        (0.174, 0.1)
+        """
+        short, long = np.minimum.outer(time, time), np.maximum.outer(time, time)
+        covariance = short**2 * (long - short / 3) / np.maximum(length - long, 1e-9 * length)
+        part = math.sqrt(2 / walks * float(self.row @ covariance @ self.row))
+        return max(self.error, abs(self.value) * part / (1 - part)) if part < 1 else math.inf
 
 
 def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) -> Slope | None:
@@ -177,6 +204,7 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
         np.where(windows[chosen], basis @ line, np.nan),
         straight,
         growth,
+        slopes[chosen],
     )
 
 
@@ -219,14 +247,14 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         length, number = self.theory.length, self.theory.number
         if length == 1:
             self.ids = self.theory.beads(observable.particles).ravel()
-            self.origins = Origins(len(self.ids), len(self.axes), max_lag)
+            self.origins, self.walks = Origins(len(self.ids), len(self.axes), max_lag), len(self.ids)
             return
         wanted = observable.particles if self.centres else -(-observable.particles // length)
         followed = min(wanted, number)
         followed -= followed % GROUPS if followed > GROUPS else 0
         # bead after bead, so that one molecule is in one group: its beads are not independent
         self.ids = self.theory.beads(followed).T.ravel()
-        rows = followed if self.centres else len(self.ids)
+        rows, self.walks = followed if self.centres else len(self.ids), followed
         self.origins = Origins(rows, len(self.axes), max_lag, min(GROUPS, followed))
 
     def observe(self, engine: Particles) -> None:
@@ -242,7 +270,7 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         expected, found = theory.expected(steps), list[Comparison]()
         slope = late_slope(time, moved, theory.diffusive_from(), theory.grows())
         if slope is not None:
-            found.append(self.diffusion(slope))
+            found.append(self.diffusion(slope, time))
         elif len(time) > 1 and math.isfinite(first := theory.diffusive_from()):
             why = f"undetermined: fewer than three lags from {first:.3g} to {time[-1]:.3g} tau"
             what, known = "diffusion coefficient", theory.coefficient()[0]
@@ -272,10 +300,11 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
             extra={"components": "".join("xyz"[axis] for axis in self.axes)},
         )
 
-    def diffusion(self, slope: Slope) -> Comparison:
+    def diffusion(self, slope: Slope, time: Array) -> Comparison:
         """The diffusion coefficient beside theory, or why it is not known."""
-        scale = 1 / (2 * len(self.axes))
-        value, error = slope.value * scale, slope.error * scale
+        scale, walks = 1 / (2 * len(self.axes)), self.walks * len(self.axes)
+        length = self.origins.count * self.observable.every * self.timestep
+        value, error = slope.value * scale, slope.error_of_walks(time, length, walks) * scale
         error = self.theory.with_start(error, value, self.origins.series)
         expected, note = self.theory.coefficient()
         if slope.growth:

@@ -112,7 +112,7 @@ class BodyCorrelationAccumulator(BodiesInTime):
         unit = "1/tau" if turns else "a^2/tau"
         note = joined(self.of.carried(turns), note)
         note = joined("" if turns else self.cut_short(float(time[-1])), note)
-        yield Comparison(what, *kept.total(trapezoid), expected, unit, note)
+        yield fitted_number(what, *kept.total(trapezoid), expected, unit, note)
         first_time, last_time = self.of.memory_holds()
         window = (time >= first_time) & (time <= last_time)
         if memory is not None and window.sum() >= 3:
