@@ -70,6 +70,23 @@ def test_blocks_of_time_count_for_no_lag_that_they_do_not_see():
     assert 0.65 < np.std((value - 2) / error) < 1.35
 
 
+def test_the_slope_of_a_single_walk_has_the_error_of_walks():
+    """A run of six times the longest lag has few independent parts: errors from their scatter were
+    too small by a half, and one of 12 slopes was more than three of them off."""
+    longest, samples, pulls = 16, 96, []
+    for seed in range(150):
+        rng, origins = np.random.default_rng(seed), Origins(1, 3, longest)
+        for place in rng.normal(size=(samples, 1, 3)).cumsum(axis=0):
+            origins.add(place, square_distance)
+        time = origins.sampled().astype(float)
+        slope = late_slope(time, origins.estimate(), longest / 4)
+        error = slope.error_of_walks(time, samples, 3)
+        pulls.append(((slope.value - 3) / slope.error, (slope.value - 3) / error))
+    scatter, of_walks = np.abs(np.array(pulls)).T
+    assert 0.5 < np.sqrt((of_walks**2).mean()) < 1.1 < np.sqrt((scatter**2).mean())
+    assert (of_walks > 3).mean() < 0.025 < (scatter > 3).mean()
+
+
 def test_blocks_of_time_are_bounded_and_hold_every_product():
     origins = Origins(8, 1, 5)
     for step in range(1, 300):

@@ -247,7 +247,8 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         length, number = self.theory.length, self.theory.number
         if length == 1:
             self.ids = self.theory.beads(observable.particles).ravel()
-            self.origins, self.walks = Origins(len(self.ids), len(self.axes), max_lag), len(self.ids)
+            self.walks = len(self.ids)
+            self.origins = Origins(self.walks, len(self.axes), max_lag)
             return
         wanted = observable.particles if self.centres else -(-observable.particles // length)
         followed = min(wanted, number)
