@@ -3,7 +3,7 @@
 import math
 
 from mesokit.seam.estimate import SURE
-from mesokit.seam.result import Comparison, with_error
+from mesokit.seam.result import Comparison, joined, with_error
 
 
 def fitted_number(
@@ -23,5 +23,5 @@ def fitted_number(
     """
     if error >= abs(value) / SURE:
         why = f"the fit finds {with_error(value, error)}: within two errors of zero"
-        return Comparison(what, math.nan, math.nan, expected, unit, why)
+        return Comparison(what, math.nan, math.nan, expected, unit, joined(why, note))
     return Comparison(what, value, error, expected, unit, note)
