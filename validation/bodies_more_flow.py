@@ -167,9 +167,9 @@ def large_spheres(page: Page) -> None:
         "random (by Monte Carlo) it lies between that of the law (1 - phi)^5, less what 18 spheres "
         "lack, and (1 - phi)^6.5. So the exponent of 5 is not that of spheres at rest at random, "
         "and spheres that the gap law keeps apart settle still more slowly. Speeds of Rotne and "
-        "Prager, a law of far spheres, are those of (1 - phi)^5 by chance: they are 16 to 20 % too "
-        "fast. Theirs is the sum over waves of (1 - k_x^2/k^2) (sin kR/kR)^2/(eta L^3 k^2) times "
-        "S(k) of the spheres."
+        "Prager, a law of far spheres, are those of (1 - phi)^5 by chance: they lie 12 to 17 % "
+        "above those of creeping flow. Theirs is the sum over waves of (1 - k_x^2/k^2) "
+        "(sin kR/kR)^2/(eta L^3 k^2) times S(k) of the spheres."
     )
     radius, side = 2.0, 16
     rows = []
