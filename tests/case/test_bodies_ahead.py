@@ -26,7 +26,7 @@ from mesokit.case.describe.explain import explain
 from mesokit.method.mpcd.body.capsule import CapsuleBody
 from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.ellipse import EllipseBody
-from mesokit.method.mpcd.body.protocol import BodyTrap, GapPotential, Squirming
+from mesokit.method.mpcd.body.protocol import BodyTrap, CounterForce, GapPotential, Squirming
 from mesokit.method.mpcd.body.sphere import SphereBody
 from mesokit.method.mpcd.body.spheroid import SpheroidBody
 from mesokit.method.mpcd.body.union import UnionBody
@@ -199,6 +199,27 @@ def test_what_is_expected_of_each_kind_has_rows():
         f"{mobility:.4g} a^2/tau",
         f"estimate, of one in a wide fluid; R^2/D = {4 / mobility:.3g} tau",
     )
+
+
+def test_bodies_that_keep_their_velocity_for_the_whole_run_are_warned_of():
+    """M D/kT; nothing is said of one of the fluid's density, in a run of one step."""
+    eta = 10 * theory.transport("srd+a", 3, density=10, timestep=0.1, angle=130).viscosity
+    [said] = warnings_of([30] * 3, SphereBody(radius=2, mass=1e12))
+    assert f"lasts {1e12 / (12 * math.pi * eta):.2g} tau, longer than the run of 0.1 tau" in said
+    assert warnings_of([30] * 3, SphereBody(radius=2)) == []
+
+
+def test_a_counter_force_beside_a_sphere_takes_a_part_of_its_speed():
+    """In a wide fluid F/(eta pi) (1/(6 R) - 1/(4 d) + R^2/(12 d^3) + a^2/(20 d^3))."""
+    drawn = {"radius": 2, "force": (12.0, 0, 0), "frame": "body"}
+    beside, off = (
+        followed(case_of([30] * 3, SphereBody(**drawn, counter=CounterForce(at=at))), "test")
+        for at in ((-5, 0, 0), (0, 5, 0))
+    )
+    eta = 10 * theory.transport("srd+a", 3, density=10, timestep=0.1, angle=130).viscosity
+    known = 12 / (eta * math.pi) * (1 / 12 - 1 / 20 + 4 / (12 * 125) + 1 / (20 * 125))
+    assert beside.roughly().speed == pytest.approx(known, rel=0.01)
+    assert off.roughly().speed == pytest.approx(12 / (12 * math.pi * eta))
 
 
 @pytest.mark.parametrize(("d", "body"), [

@@ -135,7 +135,7 @@ class Slope(NamedTuple):
         Parameters
         ----------
         time: (n,) lags of the curve, ascending.
-        length: time over which the walks were followed.
+        length: time over which each walk was followed.
         walks: their number times that of axes.
 
         >>> slope = Slope(2.0, 0.1, np.zeros(3), True, 0.0, np.array([-0.5, 0.0, 0.5]))
@@ -303,8 +303,9 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
 
     def diffusion(self, slope: Slope, time: Array) -> Comparison:
         """The diffusion coefficient beside theory, or why it is not known."""
-        scale, walks = 1 / (2 * len(self.axes)), self.walks * len(self.axes)
-        length = self.origins.count * self.observable.every * self.timestep
+        scale, runs = 1 / (2 * len(self.axes)), self.origins.series
+        walks = runs * self.walks * len(self.axes)
+        length = self.origins.count / runs * self.observable.every * self.timestep
         value, error = slope.value * scale, slope.error_of_walks(time, length, walks) * scale
         error = self.theory.with_start(error, value, self.origins.series)
         expected, note = self.theory.coefficient()

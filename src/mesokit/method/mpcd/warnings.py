@@ -37,6 +37,7 @@ SLIPPERY = 0.03  # slip length in cells
 RADIANS = 0.01  # an angle of no less may have been meant in radians
 FAST_BODY = 0.2  # speeds of sound
 SWING = 0.5  # radians of a trap in a timestep; at 2 the velocity is 1.3 times as hot
+HEAVY = 10.0  # masses of the displaced fluid
 INERTIAL = 1.0  # Reynolds number of the speed and the radius
 HOT_GAPS = 0.03  # kT a step: disks with 0.1 were 2.6 +- 1.4 % too hot, a run with 0.2 stopped
 LONG_STRIDE = 0.25  # radii that a body flies in a timestep
@@ -308,9 +309,17 @@ def _pushed_bodies(case: Case) -> Iterator[str]:
 
 
 def _fast_bodies(case: Case) -> Iterator[str]:
-    """Bodies beside whose speed that of sound is not large, or that of spreading momentum."""
+    """Bodies beside whose speed that of sound is not large, or that of spreading momentum; those
+    whose velocity outlasts the run."""
     for i, (name, kind) in enumerate(named(case.bodies), start=1):
-        found = followed(case, "check", name).roughly()
+        body = followed(case, "check", name)
+        found, length = body.roughly(), case.run.steps * case.fluid.timestep
+        lasts = body.mass * found.diffusion / case.fluid.kT
+        if body.mass > HEAVY * body.displaced and body.moving and lasts > length:
+            yield (
+                f"bodies[#{i}]: a velocity of so heavy a body lasts {lasts:.2g} tau, longer than "
+                f"the run of {length:.2g} tau: its motion stays that of the start"
+            )
         less = "B1" if kind.swim is not None else "force"
         known = setting.solvent(case)
         mach = found.speed / (known.sound_speed if known else setting.sound_speed(case))

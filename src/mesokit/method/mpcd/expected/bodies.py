@@ -246,6 +246,9 @@ class Followed(NamedTuple):
         free = [axis not in self.kind.fixed for axis in self.case.box.axes]
         force = np.array(self.kind.force or 0.0) * (1.0 if self.kind.frame == "body" else free)
         speed = float(np.linalg.norm(force)) * mobility if force.any() else 0.0
+        if speed > 0 and self.kind.counter is not None and self.kind.counter.at is not None:
+            eta = viscosity * fluid_mass_density(self.case)
+            speed *= 1.0 - self._carried_back(force, mobility, eta)
         if self.kind.swim is not None:
             speed += abs(theory.squirmer_speed(self.kind.swim.B1, d, self.kind.aspect))
         if not any(free) or (self.kind.trap is not None and self.kind.trap.k):
@@ -254,6 +257,22 @@ class Followed(NamedTuple):
         return Estimates(
             speed, diffusion, speed * solid.radius / viscosity, solid.radius**2 / diffusion
         )
+
+    def _carried_back(self, force: NDArray[np.float64], mobility: float, viscosity: float) -> float:
+        """The part of the speed of a ball that a counter-force takes which acts on its line; 0
+        elsewhere."""
+        d, counter = self.case.box.dimension, self.kind.counter
+        solid = self.kind.solid(d)
+        at, strength = np.array(counter.at), float(np.linalg.norm(force))
+        far = float(np.linalg.norm(at))
+        in_line = abs(force @ at) > (1.0 - 1e-9) * far * strength
+        if not (solid.ball and in_line and far >= solid.radius + counter.radius):
+            return 0.0
+        side = math.sqrt(self.case.box.volume / self.number) if d == 2 else math.inf
+        speed = theory.dumbbell_speed(
+            strength, solid.radius, far, viscosity, side, d, counter_radius=counter.radius
+        )
+        return 1.0 - speed / (strength * mobility)
 
     def _rough_mobility(self, viscosity: float) -> float:
         """Mean velocity over force of disks as in a lattice, or of one sphere, spheroid or rod."""

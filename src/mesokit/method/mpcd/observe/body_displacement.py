@@ -77,8 +77,10 @@ class BodyDisplacementAccumulator(BodiesInTime):
             note = joined(short if first > last / 2 else "", note)
             what = "rotational diffusion coefficient" if angles else "diffusion coefficient"
             unit = "1/tau" if angles else "a^2/tau"
-            length = self.origins.count * self.observable.every * self.case.fluid.timestep
-            error = slope.error_of_walks(time, length, self.of.number * len(self.axes)) * scale
+            runs, timestep = self.origins.series, self.case.fluid.timestep
+            length = self.origins.count / runs * self.observable.every * timestep
+            walks = runs * self.of.number * len(self.axes)
+            error = slope.error_of_walks(time, length, walks) * scale
             found.append(fitted_number(what, slope.value * scale, error, known, unit, note))
         return self.report(
             {"time": time},
