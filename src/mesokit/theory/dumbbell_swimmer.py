@@ -29,8 +29,8 @@ def dumbbell_speed(
     box it is F/(eta pi) (1/(6 R) - 1/(4 d) + R^2/(12 d^3) + a^2/(20 d^3)).
 
     Parameters: `force` F, in kT/a; `radius` R of the body; `distance` d of the middle of the ball
-    in which the fluid takes -F; `viscosity` eta, dynamic; `box_length` L; `dimension` 2 or 3;
-    `counter_radius` a of that ball; `slip` length b at the body, in the part of its own force
+    in which the fluid takes -F; `viscosity` eta, dynamic; `box_length` L, in 3D also inf;
+    `dimension` 2 or 3; `counter_radius` a of that ball; `slip` length b at the body, in the part of its own force
     alone. Raises ValueError for a value out of range and for a ball that overlaps the body.
     Source: H. Faxen, Ann. Phys. 68, 89 (1922), and derived in docs/theory.md. Valid for U d/nu well
     below 1 in 3D, and below 0.1 in 2D: inertia makes a pusher faster, a puller slower.
@@ -47,14 +47,22 @@ def dumbbell_speed(
         raise ValueError(
             f"distance = {distance!r}: expected at least both radii, {radius + counter_radius:g}"
         )
+    if dimension == 3 and math.isinf(box_length):
+        own = (1 + slip / (radius + 2 * slip)) / (6 * radius)
+        other = 1 / (4 * distance) - radius**2 / (12 * distance**3)
+        other -= counter_radius**2 / (20 * distance**3)
+        return force / (math.pi * viscosity) * (own - other)
     friction = sphere_friction_in_cube if dimension == 3 else disk_friction_in_square
     side = min(box_length, WIDE[dimension] * distance)
     own = 1 / friction(radius, side, viscosity, slip)
     most = math.ceil(2 * side / radius)  # terms fall as k to the power -7 in 3D, -5 in 2D
-    axis = np.arange(-most, most + 1)
-    n = np.stack(np.meshgrid(*[axis] * dimension), -1).reshape(-1, dimension)
-    size, number = np.unique((n**2).sum(axis=1), return_counts=True)
-    k, number = 2 * math.pi / side * np.sqrt(size[1:]), number[1:]
+    number = np.ones(1)  # of vectors n, by their square, direction by direction
+    for _ in range(dimension):
+        before, number = number, np.zeros(len(number) + most**2)
+        for n in range(most + 1):
+            number[n * n : n * n + len(before)] += (1 if n == 0 else 2) * before
+    size = np.flatnonzero(number)[1:]
+    k, number = 2 * math.pi / side * np.sqrt(size), number[size]
     over, within, turned = _means(k * radius, k * counter_radius, k * distance, dimension)
     other = (number * over * within * turned / k**2).sum() / (viscosity * side**dimension)
     return float(force * (own - other))
