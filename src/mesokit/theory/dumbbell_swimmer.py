@@ -30,8 +30,9 @@ def dumbbell_speed(
 
     Parameters: `force` F, in kT/a; `radius` R of the body; `distance` d of the middle of the ball
     in which the fluid takes -F; `viscosity` eta, dynamic; `box_length` L, in 3D also inf;
-    `dimension` 2 or 3; `counter_radius` a of that ball; `slip` length b at the body, in the part of its own force
-    alone. Raises ValueError for a value out of range and for a ball that overlaps the body.
+    `dimension` 2 or 3; `counter_radius` a of that ball; `slip` length b at the body, in the part of
+    its own force alone. Raises ValueError for a value out of range and for a ball that overlaps the
+    body.
     Source: H. Faxen, Ann. Phys. 68, 89 (1922), and derived in docs/theory.md. Valid for U d/nu well
     below 1 in 3D, and below 0.1 in 2D: inertia makes a pusher faster, a puller slower.
 
