@@ -425,7 +425,7 @@ def border(page: Page) -> None:
 
 def viscosities(case: Case, starts: int) -> np.ndarray:
     """Viscosities by the energy that fluid and bodies gain and by `stress`, of many starts."""
-    box, found_ = case.box, []
+    box, values = case.box, []
     work = box.shear_rate**2 * math.prod(box.size) * case.run.steps * STEP * DENSITY
     for seed in range(starts):
         simulation = Simulation(replace(case, run=replace(case.run, seed=seed)), threads=1)
@@ -433,8 +433,8 @@ def viscosities(case: Case, starts: int) -> np.ndarray:
         simulation.run()
         _, _, after = simulation.engine.totals()
         by_stress = found(simulation.results["stress"], "viscosity from the stress").measured
-        found_.append([(after - before) / work, by_stress])
-    return np.array(found_)
+        values.append([(after - before) / work, by_stress])
+    return np.array(values)
 
 
 # ---------------------------------------------------------------- swimmers

@@ -498,8 +498,8 @@ def spread(page: Page) -> None:
             (c,) = files[of].comparisons
             runs[what].append(c.measured)
             rows.append(renamed(c, f"seed {seed}: {what} by displacement", note, 1 / known))
-    for (what, found_), c in zip(runs.items(), rows[:2], strict=True):
-        value, error = np.mean(found_), np.std(found_, ddof=1) / math.sqrt(len(found_))
+    for (what, values), c in zip(runs.items(), rows[:2], strict=True):
+        value, error = np.mean(values), np.std(values, ddof=1) / math.sqrt(len(values))
         rows.append(Comparison(f"{what}, all runs", float(value), float(error), c.expected, c.unit,
                                "error bar: scatter of the runs"))  # fmt: skip
         met(page, f"sphere R = 2, at+a: {rows[-1].what}", rows[-1], 5)
