@@ -10,6 +10,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+import mesokit
+
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
 PROGRAMS = ROOT / "tests" / "ranks"
@@ -88,6 +90,7 @@ def on_ranks(n, program, *words, folder=None):
 def same_files(one, two):
     """Whether two runs have written the same."""
     assert (one / "log.csv").read_text() == (two / "log.csv").read_text()
+    assert mesokit.open(one).fingerprint == mesokit.open(two).fingerprint != ""
     with np.load(one / "checkpoint.npz") as a, np.load(two / "checkpoint.npz") as b:
         assert a.files == b.files
         for name in set(a.files) - {"meta"}:

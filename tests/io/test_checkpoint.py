@@ -38,6 +38,21 @@ def test_it_comes_back_as_it_was(path):
     assert [p.name for p in path.parent.iterdir()] == ["checkpoint.npz"]
 
 
+def test_its_fingerprint_is_that_of_every_bit(path, tmp_path):
+    """Neither the order of the arrays matters nor what is written beside them."""
+    other = tmp_path / "other.npz"
+    checkpoint.write(other, dict(reversed(ARRAYS.items())), {"step": 100, "time": 0.2})
+    assert checkpoint.fingerprint(other) == checkpoint.fingerprint(path)
+    changed = ARRAYS["position"].copy()
+    changed.view(np.uint64)[123, 1] ^= 1
+    renamed = {"numbers" if name == "number" else name: one for name, one in ARRAYS.items()}
+    found = {checkpoint.fingerprint(path)}
+    for arrays in (ARRAYS | {"position": changed}, ARRAYS | {"empty": np.zeros((0, 2))}, renamed):
+        checkpoint.write(other, arrays, {"step": 100})
+        found.add(checkpoint.fingerprint(other))
+    assert len(found) == 4
+
+
 @pytest.mark.parametrize("left", [0, 1, 100, 5000, -200, -1])
 def test_truncated(path, left):
     path.write_bytes(path.read_bytes()[:left])

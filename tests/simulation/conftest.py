@@ -156,6 +156,7 @@ def same_state(one: Simulation, other: Simulation) -> None:
 def same_files(one: Path, other: Path) -> None:
     a, b = mesokit.open(one), mesokit.open(other)
     assert a.results == b.results
+    assert a.fingerprint == b.fingerprint != ""
     assert sorted(p.name for p in one.iterdir()) == sorted(p.name for p in other.iterdir())
     import h5py
 

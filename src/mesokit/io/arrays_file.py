@@ -92,6 +92,16 @@ def one(path: str | Path, name: str) -> NDArray[Any]:
         return np.asarray(npy.read_array(stream, allow_pickle=False))
 
 
+def checksums(path: str | Path) -> dict[str, tuple[str, int, int]]:
+    """Name, size and checksum of each array of a file, by the name. Raises the errors of zipfile.
+
+    The size and the checksum are those of the array with its shape and type.
+    """
+    with zipfile.ZipFile(path) as archive:
+        members = {one.filename.removesuffix(SUFFIX): one for one in archive.infolist()}
+    return {name: (name, one.file_size, one.CRC) for name, one in members.items()}
+
+
 def _require_plain(member: zipfile.ZipInfo) -> None:
     if member.compress_type != zipfile.ZIP_STORED:
         raise ValueError(f"{member.filename} is compressed")

@@ -101,6 +101,23 @@ def read_meta(path: str | Path) -> dict[str, Any]:
     return dict(_load(Path(path), _META)[1]["meta"])
 
 
+def fingerprint(path: str | Path) -> str:
+    """Twelve hexadecimal digits made of the bits of all arrays of a checkpoint.
+
+    They are made of the checksums (CRC-32) that the file has for them: no array is read. Raises
+    CheckpointError as `read` does.
+
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "checkpoint.npz"
+    >>> write(path, {"x": np.arange(3)}, {"step": 7})
+    >>> fingerprint(path)
+    '05e95011e448'
+    """
+    read_meta(path)
+    sums = arrays_file.checksums(path)
+    return digest(json.dumps([sums[name] for name in sorted(sums) if name != _META]))[:12]
+
+
 def _load(
     path: Path, only: str | None = None, large: float = math.inf
 ) -> tuple[Arrays, dict[str, Any]]:

@@ -152,6 +152,7 @@ class RunFiles(Shown, Mapping[str, Result]):
             "title": self.case.title,
             "ended": self.ended,
             "state": (self.pooled or "has ended") if self.ended else self.state,
+            "fingerprint": self.fingerprint,
             "case": toml.parse(self.case.to_toml()),
             "provenance": self.provenance,
             "results": [
@@ -171,6 +172,16 @@ class RunFiles(Shown, Mapping[str, Result]):
             step = checkpoint.read_meta(self.directory.checkpoint_file)["step"]
             return bool(step >= self.case.run.warmup + self.case.run.steps)
         return True
+
+    @property
+    def fingerprint(self) -> str:
+        """Twelve hexadecimal digits made of the bits of the last checkpoint; "" without one.
+
+        Two runs have the same if all particles and all that was measured have the same bits.
+        """
+        with contextlib.suppress(RunError):
+            return checkpoint.fingerprint(self.directory.checkpoint_file)
+        return ""
 
     def report(self, path: str | Path | None = None, films: bool = False) -> Path:
         """Write one HTML file with all of the run: see `mesokit.report.document.write_report`.
@@ -329,6 +340,7 @@ class RunFiles(Shown, Mapping[str, Result]):
         with contextlib.suppress(RunError):  # results can be read without the record
             if lost := self.directory.record_lost:
                 lines.append(f"  warning: {lost}")
+            lines += [f"  fingerprint {self.fingerprint}"] * bool(self.fingerprint)
             lines += [f"  {line}" for line in work_words(self.provenance)]
             if words := absorbed_words(self.provenance.get("absorbed")):
                 lines.append(f"  {words}")
