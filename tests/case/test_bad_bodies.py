@@ -74,8 +74,8 @@ FILES = {
     SPACE + BALL + 'fixed = ["w"]\n':
         "bodies[#1].fixed[#1] = 'w': expected 'x', 'y', 'z' or 'orientation'",
     SPACE + BALL + 'fixed = "x"\n': "bodies[#1].fixed = 'x': expected a list",
-    SPACE + BALL + 'name = "a"\n':
-        "bodies[#1].name = 'a': expected a longer text, length at least 2",
+    SPACE + BALL + 'name = ""\n':
+        "bodies[#1].name = '': expected a longer text, length at least 1",
     SPACE + BALL + 'counter_force = "yes"\n':
         "bodies[#1].counter_force = 'yes': expected true or false",
     SPACE + BALL + "counter_force = 1\n": "bodies[#1].counter_force = 1: expected true or false",
@@ -110,8 +110,8 @@ FILES = {
         "bodies[#1].start.positions: only with rule = 'given'",
     **{
         SPACE + BALL + f"start = {{ rule = 'given', positions = {rows} }}\n":
-        f"bodies[#1].start.positions = {rows}: expected a list of rows, one for each body, of "
-        "finite numbers, or a file in quotes"
+        f"bodies[#1].start.positions = {rows}: expected a list of rows, one for each body, "
+        f"{'such as [[5, 5]], ' * (rows == '[5, 5]')}of finite numbers, or a file in quotes"
         for rows in ("5", "[5, 5]", "[[nan, 3, 3]]", "[[true, 3, 3]]", "[['a', 3, 3]]")
     },
     SPACE + BALL + "start = { orientations = [[1, 1, 0, 0]] }\n":

@@ -110,7 +110,7 @@ class CounterForce:
         return ball + (outer if self.shell else 0.0)
 
 
-ROWS = "expected a list of rows, one for each body, of finite numbers, or a file in quotes"
+ROWS = "expected a list of rows, one for each body, {}of finite numbers, or a file in quotes"
 Rows = Either[FileName | None, tuple[float, ...]]
 
 
@@ -125,6 +125,15 @@ def _finite(given: Any) -> float:
     if not math.isfinite(number):
         raise TypeError
     return number
+
+
+def _one_row(given: Any) -> str:
+    """Numbers that stand without the brackets of their row, with these, as an example."""
+    try:
+        row = [_finite(x) for x in given]
+    except TypeError:
+        return ""
+    return f"such as {show([row])}, " if row else ""
 
 
 @component
@@ -166,7 +175,7 @@ class BodyStart:
         try:
             rows = [[_finite(x) for x in row] for row in given]
         except TypeError:
-            raise ValueError(ROWS) from None
+            raise ValueError(ROWS.format(_one_row(given))) from None
         return tuple(map(tuple, rows))
 
     def __post_init__(self) -> None:
@@ -211,7 +220,7 @@ class Body(ABC):
         default=None,
         doc="name in the results (shape and number unless said)",
         kw_only=True,
-        min_length=2,
+        min_length=1,
     )
     density: float | None = option(
         default=None,
