@@ -62,7 +62,7 @@ def boxes(page: Page) -> None:
     )
     rows, points = [], []
     eta, slip = viscosity("srd", 3), SLIP["srd", 3]
-    for side, length in ((8, 2e5), (12, 2e5), (18, 1.2e5)):
+    for side, length in ((8, 2e5), (12, 4e5), (18, 3.6e5)):
         longest = side**2 / (4 * math.pi**2 * float(coefficients("srd", 3).viscosity))
         lag = min(math.ceil(6 * longest / STEP / 10) * 10, steps(length) // 8)
         case = case_of(SphereBody(radius=RADIUS), side, "srd", length,
