@@ -224,6 +224,40 @@ def test_arrows_point_along_the_axis_of_those_that_swim():
     assert len(quivers) == 1 and quivers[0].N == 1
 
 
+@pytest.mark.parametrize(
+    ("name", "more", "expected"),
+    [
+        ("disk", {"swim": Squirming(B1=-0.1)}, (-2.4, 0)),
+        ("ellipse", {"swim": Squirming(B1=-0.1)}, (-1.2 * body("ellipse", 2).half_axis, 0)),
+        ("disk", {"swim": Squirming(B2=0.1)}, None),  # it stirs, and goes nowhere
+        ("disk", {"force": (0, -3), "frame": "body"}, (0, -2.4)),
+        ("disk", {"force": (0, -3)}, None),  # along the axes of the box
+    ],
+)
+def test_arrows_point_where_bodies_are_headed(name, more, expected):
+    """Backwards with a negative mode, and along a force that turns with the body."""
+    case = make_case(SIZE, bodies=[body(name, 2, **more)])
+    shown = BodyFrames(case, frames_of(case, [[8, 9]], turns=[(1, 0, 0, 0)]), ("x", "y")).at()
+    found = [tuple(tip - tail) for tail, tip in shown.arrows]
+    assert found == ([] if expected is None else [pytest.approx(expected, abs=1e-12)])
+
+
+def test_an_arrow_along_a_force_stays_in_the_body():
+    """Across an L it is shorter, and not about its centre; both of its ends are in the body."""
+    long, short = (
+        make_case(SIZE, bodies=[body("union", 2, force=force, frame="body")])
+        for force in ((5, 0), (0, 5))
+    )
+    lengths = []
+    for case in (long, short):
+        shown = BodyFrames(case, frames_of(case, [[8, 9]], turns=[(1, 0, 0, 0)]), ("x", "y")).at()
+        ((tail, tip),) = shown.arrows
+        parts = case.bodies[0].solid(2).parts
+        assert (distance(parts, np.array([tail, tip]) - (8, 9)) < 0).all()
+        lengths.append(np.hypot(*(tip - tail)))
+    assert lengths[0] > 2 * lengths[1] > 3
+
+
 def test_beads_are_not_taken_for_bodies_nor_bodies_for_beads():
     case = moving_disks()
     frames = frames_of(case, [[3, 3], [7, 7], [3, 9]], kinds=[0, 0, 0])
@@ -312,10 +346,10 @@ def test_an_arrow_is_shown_where_the_section_holds_it():
         assert len(shown.outlines) == 1 and len(shown.arrows) == number
 
 
-def image_of(part, turn=((1, 0, 0), (0, 1, 0), (0, 0, 1)), capped=False, size=8.0):
+def image_of(part, turn=((1, 0, 0), (0, 1, 0), (0, 0, 1)), forward=(), size=8.0):
     """A part about the middle of an image of 40 dots per length."""
     middle = np.array([0.5 * size, 0.5 * size, 0.0])
-    placed = [Placed(part, middle, np.array(turn, float), 0, capped)]
+    placed = [Placed(part, middle, np.array(turn, float), 0, forward)]
     return shaded_parts(placed, np.ones((1, 3)), (-1, 0), (0.0, 0.0), (size, size), 40)
 
 
@@ -325,7 +359,7 @@ def test_spheres_are_shaded_as_spheres_are():
     places = np.array([[3.0, 4.0, -1.0], [4.5, 4.0, 0.5]])
     colours = np.array([[1.0, 0.5, 0.2], [0.2, 0.5, 1.0]])
     room = (-3.0, 2.0)
-    placed = [Placed(part, r, np.eye(3), n, False) for n, r in enumerate(places)]
+    placed = [Placed(part, r, np.eye(3), n, ()) for n, r in enumerate(places)]
     found = shaded_parts(placed, colours, room, (0, 0), (8, 8), 20)
     balls = Balls(places[:, :2], places[:, 2], np.full(2, 2.0), colours, room)
     assert abs(found.astype(int) - shaded(balls, (0.0, 0.0), (8.0, 8.0), 20)).max() <= 1
@@ -356,8 +390,9 @@ def test_the_sides_and_ends_of_a_capsule_meet_smoothly():
 
 def test_the_front_of_those_that_swim_is_dark():
     (part,) = body("sphere", 3).solid(3).parts
-    bare, capped = image_of(part)[160, :, 0], image_of(part, capped=True)[160, :, 0]
-    dark = capped.astype(int) < bare
+    bare, capped = image_of(part)[160, :, 0], image_of(part, forward=(2, 0, 0))[160, :, 0]
+    dark, behind = capped.astype(int) < bare, image_of(part, forward=(-2, 0, 0))[160, :, 0]
+    np.testing.assert_array_equal(behind.astype(int) < bare, dark[::-1])
     np.testing.assert_allclose(capped[dark] / bare[dark], CAP_SHADE, atol=0.02)
     first, last = np.flatnonzero(dark)[[0, -1]]
     assert first == pytest.approx(40 * (4 + 0.8 * 2), abs=1) and last >= 40 * 5.9

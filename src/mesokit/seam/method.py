@@ -180,13 +180,13 @@ class Enclosure(NamedTuple):
 class BodyShape(NamedTuple):
     """Shape of a kind of bodies that move: convex parts about its centre, in its own frame.
 
-    radius: of the smallest sphere about the centre that holds it; half_axis: of a body that swims
-    along its axis x, how far its end is from the centre; 0 of others.
+    radius: of the smallest sphere about the centre that holds it; forward: of a body that swims, or
+    that a force along its own axes drives, from the centre to its front; () of others.
     """
 
     parts: tuple[Part, ...]
     radius: float
-    half_axis: float = 0.0
+    forward: tuple[float, ...] = ()
 
 
 NOT_ENCLOSED, STEADY = Enclosure(), Steadiness()

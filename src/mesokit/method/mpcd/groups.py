@@ -50,9 +50,11 @@ def _bodies(case: Case) -> tuple[Kind, ...]:
 
 def body_shapes(case: Case) -> tuple[BodyShape, ...]:
     """Shapes of all kinds of bodies, for pictures."""
-    solids = [kind.solid(case.box.dimension) for kind in case.bodies]
-    halves = [kind.half_axis if kind.swim is not None else 0.0 for kind in case.bodies]
-    return tuple(BodyShape(s.parts, s.radius, half) for s, half in zip(solids, halves, strict=True))
+    d, found = case.box.dimension, []
+    for kind in case.bodies:
+        solid = kind.solid(d)
+        found.append(BodyShape(solid.parts, solid.radius, kind.forward(d)))
+    return tuple(found)
 
 
 def fluid_mass_density(case: Case) -> float:

@@ -1,5 +1,6 @@
 """Rigid bodies that move, at the time of a picture: outlines to scale, and their images."""
 
+from collections.abc import Sequence
 from functools import cached_property, partial
 from typing import Any
 
@@ -72,9 +73,9 @@ class BodyFrames:
                     continue
                 lines_of.append(tuple(middle + line for line in lines))
                 kinds.append(kind)
-                half = ARROW * self.shapes[kind].half_axis * turns[n, self.columns, 0]
-                if half.any() and self._holds(kind, here[n], turns[n], half):
-                    arrows.append([middle - half, middle + half])
+                ends = self._arrows[kind] @ turns[n][self.columns].T
+                if ends.any() and self._holds(kind, here[n], turns[n], ends):
+                    arrows.append(middle + ends)
                     swimmers.append(kind)
         return Bodies(
             outlines=tuple(lines_of),
@@ -116,7 +117,7 @@ class BodyFrames:
             words = [f"cut at ${AXES[self.third]} = {place}"]
         elif self.behind:
             words = [f"those at ${AXES[self.third]} {sign} {place}"]
-        if solid and any(shape.half_axis > 0 for shape in self.shapes):
+        if solid and any(shape.forward for shape in self.shapes):
             words.append("dark: the front of those that swim")
         return "; ".join(words)
 
@@ -168,15 +169,28 @@ class BodyFrames:
         height = float(self.plane - place[self.third])
         return outlines(self.shapes[kind], axes @ turn, height)
 
-    def _holds(self, kind: int, place: Array, turn: Array, half: Array) -> bool:
-        """Whether both ends of an arrow are in what the picture's plane cuts."""
+    def _holds(self, kind: int, place: Array, turn: Array, shown: Array) -> bool:
+        """Whether both ends of an arrow, as shown, are in what the picture's plane cuts."""
         ends = np.zeros((2, len(place)))
-        ends[:, self.columns] = -half, half
+        ends[:, self.columns] = shown
         if self.third is not None and self.plane is not None:
             ends[:, self.third] = self.plane - place[self.third]
         return bool(
             (distance(self.shapes[kind].parts, ends @ turn[: len(place), : len(place)]) < 0).all()
         )
+
+    @cached_property
+    def _arrows(self) -> Sequence[Array]:
+        """Tail and tip (2, 3) of the arrow of each kind, in its own frame: as far behind and before
+        its centre as they stay in it, and as a part of the way to its front; zeros without one."""
+        found = []
+        for shape in self.shapes:
+            ends = np.zeros((2, 3))
+            if shape.forward:
+                front = ARROW * np.array(shape.forward)
+                ends[:, : len(front)] = _inner_part(shape, -front), _inner_part(shape, front)
+            found.append(ends)
+        return found
 
     @cached_property
     def _own(self) -> list[list[Array]]:
@@ -206,10 +220,8 @@ class BodyFrames:
             for n in np.flatnonzero(self._seen(here)):
                 place, shape = axes @ here[n], self.shapes[self.kinds[n]]
                 if place[2] <= plane:
-                    colour, capped = int(self.kinds[n]) % COLOURS, shape.half_axis > 0
-                    found += [
-                        Placed(p, place, axes @ turns[n], colour, capped) for p in shape.parts
-                    ]
+                    colour, turn = int(self.kinds[n]) % COLOURS, axes @ turns[n]
+                    found += [Placed(p, place, turn, colour, shape.forward) for p in shape.parts]
         return found
 
 
@@ -246,10 +258,17 @@ def require_traces(case: Case, traces: float) -> None:
         raise CaseError(f"traces = {show(traces)}: expected a time above 0")
 
 
+def _inner_part(shape: BodyShape, end: Array) -> Array:
+    """The part of a line from the centre of a body to a place that is in the body."""
+    line = np.outer(np.linspace(0.0, 1.0, 41), end)
+    left = np.flatnonzero(distance(shape.parts, line) >= 0)
+    return line[max(left[0] - 1, 0) if len(left) else -1]
+
+
 def _round(shape: BodyShape) -> bool:
     """Whether a picture of a body has no need of its orientation."""
     alone = len(shape.parts) == 1 and shape.parts[0].kind == "ball"
-    return alone and shape.half_axis == 0
+    return alone and not shape.forward
 
 
 def rotations(turns: Array) -> Array:

@@ -16,14 +16,15 @@ CAP, CAP_SHADE = 0.8, 0.35  # cosine of the half angle of a dark cap; what its c
 
 class Placed(NamedTuple):
     """A part, its body's place (3,) and rotation (3, 3) along the axes of the picture, the third
-    towards the eye; the number of its colour, and whether the end along the body's axis x is dark.
+    towards the eye; the number of its colour; the direction in the body's frame in which its end is
+    dark, or () for none.
     """
 
     part: Part
     place: Array
     turn: Array
     colour: int
-    capped: bool
+    forward: tuple[float, ...]
 
 
 class Surface(NamedTuple):
@@ -84,9 +85,12 @@ def shaded_parts(
     lit, owner = np.zeros_like(nearest), np.full(nearest.shape, -1, np.int16)
     samples = Samples(np.array(low, float), scale, nearest, lit, owner)
     back, span = room[0], max(room[1] - room[0], 1e-300)
-    for part, place, turn, colour, capped in placed:
+    for part, place, turn, colour, forward in placed:
         light = 1.0 - DARK * (1.0 - min(max((place[2] - back) / span, 0.0), 1.0))
-        look = Look(light, colour, np.array(turn[:, 0]) * capped)
+        ahead = np.zeros(3)
+        if forward:
+            ahead = turn @ forward / np.hypot.reduce(forward)
+        look = Look(light, colour, ahead)
         for surface in surfaces(part, place, turn):
             front(surface, look, samples)
     covered = _of_pixels((owner >= 0).astype(np.float32))

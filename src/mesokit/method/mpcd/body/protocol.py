@@ -349,6 +349,16 @@ class Body(ABC):
         """Volume, inertia and parts about the centre of mass, in 2D or 3D."""
         return _solid(self.region(), dimension == 2)
 
+    def forward(self, dimension: int) -> tuple[float, ...]:
+        """In its own frame, from the centre to the end towards which it swims, or towards which a
+        force along its own axes drives it, as far as its radius; () if neither does."""
+        if self.swim is not None and self.swim.B1:
+            return (math.copysign(self.half_axis, self.swim.B1), *(0.0,) * (dimension - 1))
+        if self.force is None or self.frame != "body" or not any(self.force):
+            return ()
+        size = self.solid(dimension).radius / math.hypot(*self.force)
+        return tuple(size * component for component in self.force)
+
     @property
     def balanced(self) -> bool:
         """Whether something takes the opposite of its force."""
