@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,7 @@ from mesokit import (
 )
 
 RADIUS, PARTS_OF_RUN = 2.0, 20
+SEEDS = 11, 12, 13  # of the runs of swimmers
 
 
 def mean_of(values: np.ndarray) -> tuple[float, float]:
@@ -203,15 +205,19 @@ def swimmers(page: Page) -> None:
         "displacement between lags of 400 and 1000, where theory has the rest of the memory. "
         "There U is the measured speed along the axis, D that of the disk in the box by theory, "
         f"D_r the one measured without swimming. Error bars are the scatter of {PARTS_OF_RUN} "
-        "parts of the run; that of theory (from D_r and U) is in that of the last row."
+        "parts of each of three runs; that of theory (from D_r and U) is in that of the last row."
     )
     rows, turning, speed = [], {}, (0.0, 0.0)
     every = 50
     for name, swim in (("at rest", None), ("swimming", Squirming(B1=first))):
         body = DiskBody(radius=RADIUS, swim=swim)
         case = case_of(body, side, "at+a", 4e6 if swim else 2e6)
-        series = recorded(page, f"swimmer-{name.replace(' ', '')}", case, every, place_and_angle)
-        parts = np.array_split(series, PARTS_OF_RUN)
+        parts = []
+        for seed in SEEDS:
+            kept = f"swimmer-{name.replace(' ', '')}" + f"-{seed}" * (seed != SEEDS[0])
+            one = replace(case, run=replace(case.run, seed=seed))
+            series = recorded(page, kept, one, every, place_and_angle)
+            parts += np.array_split(series, PARTS_OF_RUN)
         lags = (round(20 / (every * STEP)), round(100 / (every * STEP)))
         grown = [square_at(p[:, 2:3], lags) for p in parts]
         value, error = mean_of(np.array([(b - a) / (2 * 80.0) for a, b in grown]))
@@ -219,7 +225,7 @@ def swimmers(page: Page) -> None:
         friction = theory.rotational_friction(RADIUS, viscosity("at+a", 2), 2, side,
                                               SLIP["at+a", 2], share_of("at+a", 2))  # fmt: skip
         rows.append(Comparison(f"{name}: D_r", value, error, 1 / friction, "1/tau",
-                               f"{case.run.steps} steps"))  # fmt: skip
+                               f"{len(SEEDS)} runs of {case.run.steps} steps"))  # fmt: skip
         met(page, rows[-1].what, rows[-1], 5)
         if swim:
             ahead = [along_axis(p) / (every * STEP) for p in parts]
