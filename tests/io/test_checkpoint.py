@@ -70,7 +70,10 @@ def test_no_flipped_bit_goes_unnoticed(path):
             arrays, meta = checkpoint.read(path, case="mine")
         except CheckpointError as error:
             assert "\n" not in str(error)
+            with pytest.raises(CheckpointError):
+                checkpoint.fingerprint(path)
             continue
+        assert checkpoint.fingerprint(path)
         # dates of the archive's entries are not covered by a checksum, all else is
         assert meta == {"step": 100, "time": 0.1}
         for name in ARRAYS:

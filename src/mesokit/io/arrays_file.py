@@ -73,16 +73,21 @@ def load(path: str | Path, large: float = math.inf) -> dict[str, NDArray[Any]]:
     and ValueError for compressed members, which cannot be mapped.
     """
     with zipfile.ZipFile(path) as archive:
-        for member in archive.infolist():
-            _require_plain(member)
-        for member in archive.infolist():
-            with archive.open(member) as stream:
-                while stream.read(READ):
-                    pass
+        _check(archive)
         return {
             member.filename.removesuffix(SUFFIX): _array(path, archive, member, large)
             for member in archive.infolist()
         }
+
+
+def _check(archive: zipfile.ZipFile) -> None:
+    """Read every byte of a file, and compare checksums."""
+    for member in archive.infolist():
+        _require_plain(member)
+    for member in archive.infolist():
+        with archive.open(member) as stream:
+            while stream.read(READ):
+                pass
 
 
 def one(path: str | Path, name: str) -> NDArray[Any]:
@@ -93,11 +98,12 @@ def one(path: str | Path, name: str) -> NDArray[Any]:
 
 
 def checksums(path: str | Path) -> dict[str, tuple[str, int, int]]:
-    """Name, size and checksum of each array of a file, by the name. Raises the errors of zipfile.
+    """Name, size and checksum of each array of a file, by the name. Raises the errors of `load`.
 
-    The size and the checksum are those of the array with its shape and type.
+    The size and the checksum are those of the array with its shape and type. Every byte is checked.
     """
     with zipfile.ZipFile(path) as archive:
+        _check(archive)
         members = {one.filename.removesuffix(SUFFIX): one for one in archive.infolist()}
     return {name: (name, one.file_size, one.CRC) for name, one in members.items()}
 

@@ -152,7 +152,7 @@ class RunFiles(Shown, Mapping[str, Result]):
             "title": self.case.title,
             "ended": self.ended,
             "state": (self.pooled or "has ended") if self.ended else self.state,
-            "fingerprint": self.fingerprint,
+            "fingerprint": self._fingerprint_words().removeprefix("fingerprint "),
             "case": toml.parse(self.case.to_toml()),
             "provenance": self.provenance,
             "results": [
@@ -177,11 +177,18 @@ class RunFiles(Shown, Mapping[str, Result]):
     def fingerprint(self) -> str:
         """Twelve hexadecimal digits made of the bits of the last checkpoint; "" without one.
 
-        Two runs have the same if all particles and all that was measured have the same bits.
+        Two runs have the same if all particles and all that observables have seen have the same
+        bits; the trajectory is not in it. Raises RunError for a damaged checkpoint.
         """
-        with contextlib.suppress(RunError):
-            return checkpoint.fingerprint(self.directory.checkpoint_file)
-        return ""
+        file = self.directory.checkpoint_file
+        return checkpoint.fingerprint(file) if file.exists() else ""
+
+    def _fingerprint_words(self) -> str:
+        """The fingerprint, or what is wrong with the checkpoint."""
+        try:
+            return f"fingerprint {self.fingerprint}" if self.fingerprint else ""
+        except RunError as error:
+            return f"fingerprint none: {error}"
 
     def report(self, path: str | Path | None = None, films: bool = False) -> Path:
         """Write one HTML file with all of the run: see `mesokit.report.document.write_report`.
@@ -340,7 +347,7 @@ class RunFiles(Shown, Mapping[str, Result]):
         with contextlib.suppress(RunError):  # results can be read without the record
             if lost := self.directory.record_lost:
                 lines.append(f"  warning: {lost}")
-            lines += [f"  fingerprint {self.fingerprint}"] * bool(self.fingerprint)
+            lines += [f"  {words}" for words in [self._fingerprint_words()] if words]
             lines += [f"  {line}" for line in work_words(self.provenance)]
             if words := absorbed_words(self.provenance.get("absorbed")):
                 lines.append(f"  {words}")
