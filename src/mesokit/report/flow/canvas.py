@@ -1,5 +1,6 @@
 """Panels side by side: parts that stay, and parts drawn anew in each frame of a film."""
 
+import math
 import textwrap
 from collections.abc import Sequence
 from typing import Any
@@ -27,6 +28,13 @@ LOOK = STYLE | {
 }
 NAMED = 3.0  # inches of a flat panel that has its name beside the colour bar
 MARGIN, LETTERS = 0.12, 15.0  # of the note: inches at its sides, letters in an inch
+MARK = 0.5  # inches of a mark in the legend, and of the room around it
+
+
+def columns_of(names: Sequence[str], width: float) -> int:
+    """Columns of a legend with a mark beside each name, in a figure so many inches wide."""
+    widest = MARK + max(map(len, names), default=0) / LETTERS
+    return min(max(int(width / widest), 1), max(len(names), 1))
 
 
 class Canvas:
@@ -65,7 +73,9 @@ class Canvas:
         marks += [body_panel.keys(flow.bodies) for flow in flows[:1] if flow.bodies is not None]
         named = [name for _, names in marks for name in names]
         if named:
-            lines.append("")  # room for the legend of the kinds
+            lines += [""] * math.ceil(
+                len(named) / columns_of(named, width)
+            )  # room for the legend of the kinds
         self.place = layout(self.view.extent, bars, stamp, len(lines))
         with mpl.rc_context(LOOK):
             self.figure = ShownFigure(figsize=self.place.size)
@@ -109,7 +119,8 @@ class Canvas:
 
     def _key(self, marks: Sequence[Any], names: Sequence[str]) -> None:
         """A legend of the kinds of beads and bodies, at the lower right of the figure."""
-        where: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.0), "ncols": len(marks)}
+        columns = columns_of(names, float(self.figure.get_size_inches()[0]) - 2 * MARGIN)
+        where: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.0), "ncols": columns}
         self.figure.legend(marks, names, fontsize=8, borderaxespad=0.1, frameon=False, **where)
 
     def _add(self, box: Box) -> Any:
