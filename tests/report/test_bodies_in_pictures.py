@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit import CaseError, Plates, RunError, Simulation, Trajectory
+from mesokit import CaseError, Disk, Plates, RunError, Simulation, Trajectory
 from mesokit.geometry import primitive
 from mesokit.geometry.region import brick, capsule, ellipsoid
+from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.protocol import Squirming
 from mesokit.method.mpcd.body.rectangle import RectangleBody
+from mesokit.method.mpcd.body.union import UnionBody
 from mesokit.report.flow import KINDS, animate, body_panel, picture
 from mesokit.report.flow.bodies import COLOURS, BodyFrames, outlines
 from mesokit.report.flow.body_distance import distance
@@ -256,6 +258,31 @@ def test_an_arrow_along_a_force_stays_in_the_body():
         assert (distance(parts, np.array([tail, tip]) - (8, 9)) < 0).all()
         lengths.append(np.hypot(*(tip - tail)))
     assert lengths[0] > 2 * lengths[1] > 3
+
+
+def test_an_arrow_crosses_the_gap_of_two_parts():
+    parts = [Disk(centre=(x, 0), radius=2) for x in (-3, 3)]
+    case = make_case(SIZE, bodies=[UnionBody(parts=parts, force=(0, 4), frame="body")])
+    shown = BodyFrames(case, frames_of(case, [[8, 9]], turns=[(1, 0, 0, 0)]), ("x", "y")).at()
+    ((tail, tip),) = shown.arrows
+    np.testing.assert_allclose(tip - tail, (0, 2 * 0.6 * 5), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "names", [["a", "b"], ["long name " * 3] * 4, [f"kind-{k}" for k in "abcdefghi"]]
+)
+def test_a_legend_of_many_kinds_stays_in_the_figure(names):
+    disks = [DiskBody(radius=2, name=f"{name} {k}") for k, name in enumerate(names)]
+    case = make_case((60, 60), bodies=disks)
+    places = [[6 + 6 * k, 30] for k in range(len(names))]
+    figure = picture(case, {}, frames_of(case, places), "bodies")
+    figure.canvas.draw()
+    (legend,) = figure.legends
+    assert len(legend.texts) == len(names)
+    found, whole = legend.get_window_extent(), figure.bbox
+    assert whole.x0 <= found.x0 and found.x1 <= whole.x1
+    below = min(ax.get_tightbbox().y0 for ax in figure.axes)
+    assert whole.y0 <= found.y0 and found.y1 <= below
 
 
 def test_beads_are_not_taken_for_bodies_nor_bodies_for_beads():

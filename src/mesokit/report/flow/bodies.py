@@ -22,6 +22,7 @@ from mesokit.seam.method import BodyShape, method_of
 
 GRID = 128  # samples along the sides of a square that holds an outline
 COLOURS = 4  # of kinds, one after the other
+SHORT = 0.3  # of its half length: an arrow that is cut to less is drawn whole
 ARROW = 0.6  # of half the length of a body that swims: half its arrow
 
 
@@ -118,7 +119,7 @@ class BodyFrames:
         elif self.behind:
             words = [f"those at ${AXES[self.third]} {sign} {place}"]
         if solid and any(shape.forward for shape in self.shapes):
-            words.append("dark: the front of those that swim")
+            words.append("dark: their front, where it can be seen")
         return "; ".join(words)
 
     def _traces(self, last: int) -> Array:
@@ -175,20 +176,25 @@ class BodyFrames:
         ends[:, self.columns] = shown
         if self.third is not None and self.plane is not None:
             ends[:, self.third] = self.plane - place[self.third]
-        return bool(
-            (distance(self.shapes[kind].parts, ends @ turn[: len(place), : len(place)]) < 0).all()
-        )
+        if self.third is None:
+            return True
+        own = ends @ turn[: len(place), : len(place)]
+        return bool((distance(self.shapes[kind].parts, own) < 0).all())
 
     @cached_property
     def _arrows(self) -> Sequence[Array]:
         """Tail and tip (2, 3) of the arrow of each kind, in its own frame: as far behind and before
-        its centre as they stay in it, and as a part of the way to its front; zeros without one."""
+        its centre as they stay in it, and as a part of the way to its front; zeros without one.
+
+        Where the centre is in a gap or a neck, so that little of the arrow is left, it is whole."""
         found = []
         for shape in self.shapes:
             ends = np.zeros((2, 3))
             if shape.forward:
                 front = ARROW * np.array(shape.forward)
-                ends[:, : len(front)] = _inner_part(shape, -front), _inner_part(shape, front)
+                inner = np.array([_inner_part(shape, -front), _inner_part(shape, front)])
+                short = np.ptp(inner, axis=0).max() < SHORT * np.abs(front).max()
+                ends[:, : len(front)] = (-front, front) if short else inner
             found.append(ends)
         return found
 
