@@ -74,6 +74,8 @@ FILES = {
     SPACE + BALL + 'fixed = ["w"]\n':
         "bodies[#1].fixed[#1] = 'w': expected 'x', 'y', 'z' or 'orientation'",
     SPACE + BALL + 'fixed = "x"\n': "bodies[#1].fixed = 'x': expected a list",
+    SPACE + BALL + 'name = "2"\n':
+        "bodies[#1].name = '2': expected a name that is no number: kinds have numbers as well",
     SPACE + BALL + 'name = ""\n':
         "bodies[#1].name = '': expected a longer text, length at least 1",
     SPACE + BALL + 'counter_force = "yes"\n':
@@ -97,7 +99,8 @@ FILES = {
         "bodies[#1].hinge = [0, 0, 0]: expected a vector other than 0",
     SPACE + BALL + 'hinge = [1, 0, 0]\nfixed = ["orientation"]\n':
         "bodies[#1].hinge: not with fixed = 'orientation', which never turns",
-    SPACE + BALL + "swim = {}\n": "bodies[#1].swim.B1: missing; a squirmer needs B1, B2 or both",
+    SPACE + BALL + "swim = {}\n":
+        "bodies[#1].swim.B1 = 0: a squirmer needs B1, B2 or both other than 0",
     SPACE + BALL + 'surface = "slip"\nswim = { B1 = 1 }\n':
         "bodies[#1].swim: not with surface = 'slip', which drags no fluid along",
     SPACE + '[[bodies]]\nshape = "cuboid"\nsize = [4, 4, 4]\nswim = { B1 = 1 }\n':

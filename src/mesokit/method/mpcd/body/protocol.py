@@ -82,7 +82,7 @@ class Squirming:
 
     def __post_init__(self) -> None:
         if self.B1 == 0 and self.B2 == 0:
-            raise ValueError("B1: missing; a squirmer needs B1, B2 or both")
+            raise ValueError("B1 = 0: a squirmer needs B1, B2 or both other than 0")
 
 
 @component
@@ -291,6 +291,13 @@ class Body(ABC):
     start: BodyStart = option(
         default=BodyStart(), doc="first places, orientations, velocities", kw_only=True
     )
+
+    @field_validator("name")
+    @classmethod
+    def _no_number(cls, name: str | None) -> str | None:
+        if name is not None and name.isdigit():
+            raise ValueError("expected a name that is no number: kinds have numbers as well")
+        return name
 
     @field_validator("fixed")
     @classmethod
