@@ -67,8 +67,9 @@ def viscosities(page: Page) -> None:
         "Viscosities measured under shear ([viscosity_rules](viscosity_rules.md)) are 1 to 7 % "
         "above those of molecular chaos for rules +a, by the memory of long waves. Theory below "
         "has those of molecular chaos. Bodies of a few cells feel these: with them rotation and "
-        "swimming give the same slip lengths (below), with those measured they do not. That of "
-        "SRD+a in 3D at 90 degrees is measured here, in a cube of side 16 at the shear rate 0.1."
+        "swimming give the same slip lengths (below). With those measured they differ in 2D; in 3D "
+        "the error bars of swimming are too wide to tell. That of SRD+a in 3D at 90 degrees is "
+        "measured here, in a cube of side 16 at the shear rate 0.1."
     )
     rows = []
     for (rule, d), (value, error) in VISCOSITIES.items():
@@ -280,9 +281,8 @@ def einstein(page: Page) -> None:
         f"Viscosity by `stress` of 2D AT+a with disks of R = 2 in a square of side {side}, over "
         f"that of the same box without bodies, at the rate {rate:g}. Theory is 1 + 2 phi (1 + 2 "
         "b/R)/(1 + 4 b/R), with the slip length that rotation gives, the first order in phi alone: "
-        "encounters of disks add some phi^2 to it. The amplitude of a flow that a sinusoidal force "
-        "drives in such a box, where stress is not asked for, gave 2.24(16) and 2.41(13) for the "
-        "gain over phi at the two fractions (500,000 and 150,000 steps, force 0.004)."
+        "encounters of disks add some phi^2 to it. A wave that a sinusoidal force drives stands on "
+        "the page of [slow flows](bodies_slow_flow.md)."
     )
     rows, empty = [], (1.0, 0.0)
     for number in (0, 3, 6):
@@ -544,7 +544,8 @@ def settling(page: Page) -> None:
         "what so few spheres lack (`settling_of_few`), with Ladd's viscosity at high frequency "
         "and S(0) of spheres that are as large as the gap law keeps them apart. Theory is (1 - "
         "phi)^5 of hard spheres; exponents of 4.5 and 5.5 stand as a note, and the same law with "
-        "the volume that the gap law keeps. The law is not met. Most of the lag is where the "
+        "the volume that the gap law keeps, which lies too low at the larger phi. The "
+        "law is not met. Most of the lag is where the "
         "spheres are: the gap law keeps these small ones a fifth of a radius apart, and spheres "
         "that stay apart settle more slowly ([next page](bodies_more_flow.md), which has the speed "
         "for their places). A third of the force brings 18 spheres a little nearer: inertia is a "
