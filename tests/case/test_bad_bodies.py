@@ -453,6 +453,11 @@ CASES = {
         "bodies[#1].torque = 1000000: in the first timestep the surface gets to 33.3 cells in a "
         "timestep; expected at most 0.35: a shorter fluid.timestep, or weaker",
     ),
+    "a fast swimmer": (
+        2, [DiskBody(radius=3, swim=Squirming(B1=-50))], {},
+        "bodies[#1].swim.B1 = -50: it swims by 2.5 cells in a timestep; expected at most 0.35: a "
+        "shorter fluid.timestep, or smaller",
+    ),
     "a stiff trap": (
         2, [DiskBody(radius=3, mass=200, trap=BodyTrap(k=1e9))], {},
         "bodies[#1].trap.k = 1000000000: too stiff, it swings by 224 rad in a timestep; expected "

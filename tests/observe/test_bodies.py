@@ -406,7 +406,8 @@ def test_a_body_that_goes_too_far_in_a_step_stops_the_run():
         Simulation(moving_disks(bodies=(them,)), threads=1).run(3)
     assert re.fullmatch(
         r"step 2: body 2 of them goes 0\.7\d+ cells in a timestep, at a speed of 7\.\d+; expected "
-        "at most 0.35, or gaps may be missed: a shorter fluid.timestep or weaker forces",
+        "at most 0.35, or gaps may be missed: a shorter fluid.timestep, weaker forces or a "
+        "slower swim",
         str(error.value),
     )
 

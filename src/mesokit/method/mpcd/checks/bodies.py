@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import name_of, one_of, show, tag_of
 from mesokit.geometry.primitive import PRIMITIVES
@@ -294,6 +295,13 @@ def _fast(case: Case, kind: Body) -> Iterator[str]:
                     f"start.{name}[#{i}] = {show(row)}: it moves by {path:.3g} cells in a "
                     f"timestep; {least} slower"
                 )
+    if kind.swim is not None:
+        path = abs(theory.squirmer_speed(kind.swim.B1, d, kind.aspect)) * dt
+        if path > LONGEST_PATH and gaps and any(free):
+            yield (
+                f"swim.B1 = {show(kind.swim.B1)}: it swims by {path:.3g} cells in a timestep; "
+                f"{least} smaller"
+            )
     if kind.swim is not None and kind.swim.tumble_rate * dt > 1.0:
         rate = kind.swim.tumble_rate
         yield (
