@@ -111,9 +111,9 @@ def tails(page: Page) -> None:
         "of V is added what the tail in this periodic box (`vacf_modes`) has more than that of a "
         "wide fluid; the bare tail stands as a note. The law is asked for beyond R^2/nu. Before, "
         "V is below it: theory has no sound, which takes R/c = 2 to pass, and the spheres make "
-        "their fluid 5 % more viscous; neither was measured apart. Omega is above it between 3 and "
-        "5: theory has no slip, which lowers the friction of rotation by 3 b/R, 8 %. Error "
-        "bars are the scatter of "
+        "their fluid 5 % more viscous. Omega is above it between 3 and 5: theory has no slip, "
+        "which lowers the friction of rotation by 3 b/R, 8 %. None of these causes was measured "
+        "apart. Error bars are the scatter of "
         f"{PARTS_OF_RUN} parts of the run."
     )
     body = SphereBody(radius=RADIUS, number=number)
@@ -242,11 +242,9 @@ def swimmers(page: Page) -> None:
                            math.hypot(other[1] / D_r, error * other[0] / D_r**2), 1.0))  # fmt: skip
     met(page, rows[-1].what, rows[-1], 10)
     D = 1 / theory.disk_friction_in_square(RADIUS, side, viscosity("at+a", 2), SLIP["at+a", 2])
-    persists = (math.exp(-D_r * high) - math.exp(-D_r * low)) / (D_r * (high - low))
-    known = D + (theory.swimmer_diffusion(D, speed[0], D_r, 2) - D) * (1 + persists)
+    known = spread_between(D, speed[0], D_r, (low, high))
     doubt = (known - D) * math.hypot(2 * speed[1] / speed[0], error / D_r)
-    rest = (math.exp(-other[0] * high) - math.exp(-other[0] * low)) / (other[0] * (high - low))
-    own = D + (theory.swimmer_diffusion(D, speed[0], other[0], 2) - D) * (1 + rest)
+    own = spread_between(D, speed[0], other[0], (low, high))
     fraction = math.pi * RADIUS**2 / side**2
     expected = theory.squirmer_speed_in_box(
         theory.squirmer_speed(first, 2), fraction, SLIP["at+a", 2] / RADIUS
@@ -259,6 +257,14 @@ def swimmers(page: Page) -> None:
                            f"{own:.3f}"))  # fmt: skip
     met(page, rows[-1].what, rows[-1], 10)
     page.table(rows)
+
+
+def spread_between(D: float, speed: float, D_r: float, lags: tuple[float, float]) -> float:
+    """Growth of the mean square displacement of a swimmer between two lags, over 4 times their
+    difference: D + U^2/(2 D_r) less what its memory has not lost yet."""
+    low, high = lags
+    memory = (math.exp(-D_r * low) - math.exp(-D_r * high)) / (D_r * (high - low))
+    return float(D + (theory.swimmer_diffusion(D, speed, D_r, 2) - D) * (1 - memory))
 
 
 def place_and_angle(engine: Any) -> list[float]:

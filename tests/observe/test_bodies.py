@@ -407,7 +407,7 @@ def test_a_body_that_goes_too_far_in_a_step_stops_the_run():
     assert re.fullmatch(
         r"step 2: body 2 of them goes 0\.7\d+ cells in a timestep, at a speed of 7\.\d+; expected "
         "at most 0.35, or gaps may be missed: a shorter fluid.timestep, weaker forces or a "
-        "slower swim",
+        "smaller swim.B1",
         str(error.value),
     )
 

@@ -152,7 +152,7 @@ class RunFiles(Shown, Mapping[str, Result]):
             "title": self.case.title,
             "ended": self.ended,
             "state": (self.pooled or "has ended") if self.ended else self.state,
-            "fingerprint": self._fingerprint_words().removeprefix("fingerprint "),
+            "fingerprint": self._fingerprint_or_reason(),
             "case": toml.parse(self.case.to_toml()),
             "provenance": self.provenance,
             "results": [
@@ -183,12 +183,12 @@ class RunFiles(Shown, Mapping[str, Result]):
         file = self.directory.checkpoint_file
         return checkpoint.fingerprint(file) if file.exists() else ""
 
-    def _fingerprint_words(self) -> str:
-        """The fingerprint, or what is wrong with the checkpoint."""
+    def _fingerprint_or_reason(self) -> str:
+        """The fingerprint, or why there is none: a damaged checkpoint; "" without a checkpoint."""
         try:
-            return f"fingerprint {self.fingerprint}" if self.fingerprint else ""
+            return self.fingerprint
         except RunError as error:
-            return f"fingerprint none: {error}"
+            return f"none: {error}"
 
     def report(self, path: str | Path | None = None, films: bool = False) -> Path:
         """Write one HTML file with all of the run: see `mesokit.report.document.write_report`.
@@ -347,7 +347,8 @@ class RunFiles(Shown, Mapping[str, Result]):
         with contextlib.suppress(RunError):  # results can be read without the record
             if lost := self.directory.record_lost:
                 lines.append(f"  warning: {lost}")
-            lines += [f"  {words}" for words in [self._fingerprint_words()] if words]
+            if digits := self._fingerprint_or_reason():
+                lines.append(f"  fingerprint {digits}")
             lines += [f"  {line}" for line in work_words(self.provenance)]
             if words := absorbed_words(self.provenance.get("absorbed")):
                 lines.append(f"  {words}")

@@ -172,12 +172,10 @@ class BodyFrames:
 
     def _holds(self, kind: int, place: Array, turn: Array, shown: Array) -> bool:
         """Whether both ends of an arrow, as shown, are in what the picture's plane cuts."""
-        ends = np.zeros((2, len(place)))
-        ends[:, self.columns] = shown
-        if self.third is not None and self.plane is not None:
-            ends[:, self.third] = self.plane - place[self.third]
-        if self.third is None:
+        if self.third is None or self.plane is None:
             return True
+        ends = np.zeros((2, len(place)))
+        ends[:, self.columns], ends[:, self.third] = shown, self.plane - place[self.third]
         own = ends @ turn[: len(place), : len(place)]
         return bool((distance(self.shapes[kind].parts, own) < 0).all())
 
@@ -186,7 +184,9 @@ class BodyFrames:
         """Tail and tip (2, 3) of the arrow of each kind, in its own frame: as far behind and before
         its centre as they stay in it, and as a part of the way to its front; zeros without one.
 
-        Where the centre is in a gap or a neck, so that little of the arrow is left, it is whole."""
+        Where the centre is in a gap or a neck, so that little of the arrow is left, it is whole.
+        Sections in space leave such arrows out (see `_holds`).
+        """
         found = []
         for shape in self.shapes:
             ends = np.zeros((2, 3))
@@ -265,7 +265,7 @@ def require_traces(case: Case, traces: float) -> None:
 
 
 def _inner_part(shape: BodyShape, end: Array) -> Array:
-    """The part of a line from the centre of a body to a place that is in the body."""
+    """The last place (d,) in the body on the line from its centre to `end` (d,), in cells."""
     line = np.outer(np.linspace(0.0, 1.0, 41), end)
     left = np.flatnonzero(distance(shape.parts, line) >= 0)
     return line[max(left[0] - 1, 0) if len(left) else -1]

@@ -73,9 +73,8 @@ class Canvas:
         marks += [body_panel.keys(flow.bodies) for flow in flows[:1] if flow.bodies is not None]
         named = [name for _, names in marks for name in names]
         if named:
-            lines += [""] * math.ceil(
-                len(named) / columns_of(named, width)
-            )  # room for the legend of the kinds
+            rows = math.ceil(len(named) / columns_of(named, width))
+            lines += [""] * rows  # room for the legend of the kinds
         self.place = layout(self.view.extent, bars, stamp, len(lines))
         with mpl.rc_context(LOOK):
             self.figure = ShownFigure(figsize=self.place.size)

@@ -357,8 +357,11 @@ class Body(ABC):
         return _solid(self.region(), dimension == 2)
 
     def forward(self, dimension: int) -> tuple[float, ...]:
-        """In its own frame, from the centre to the end towards which it swims, or towards which a
-        force along its own axes drives it, as far as its radius; () if neither does."""
+        """From its centre to its front, in cells, along its own axes (d,); () without a front.
+
+        The front is the end towards which it swims, or towards which a force along its own axes
+        drives it; that is as far as its radius.
+        """
         if self.swim is not None and self.swim.B1:
             return (math.copysign(self.half_axis, self.swim.B1), *(0.0,) * (dimension - 1))
         if self.force is None or self.frame != "body" or not any(self.force):

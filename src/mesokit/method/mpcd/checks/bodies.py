@@ -302,12 +302,12 @@ def _fast(case: Case, kind: Body) -> Iterator[str]:
                 f"swim.B1 = {show(kind.swim.B1)}: it swims by {path:.3g} cells in a timestep; "
                 f"{least} smaller"
             )
-    if kind.swim is not None and kind.swim.tumble_rate * dt > 1.0:
         rate = kind.swim.tumble_rate
-        yield (
-            f"swim.tumble_rate = {show(rate)}: {rate * dt:.3g} turns in a timestep; expected at "
-            f"most 1, or {1 / dt:g}"
-        )
+        if rate * dt > 1.0:
+            yield (
+                f"swim.tumble_rate = {show(rate)}: {rate * dt:.3g} turns in a timestep; expected "
+                f"at most 1, or {1 / dt:g}"
+            )
     thermal = MOST_SPEEDS * math.sqrt(kT / mass) * dt
     if thermal > LONGEST_PATH and gaps and any(free):
         yield (

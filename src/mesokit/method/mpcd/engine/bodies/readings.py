@@ -243,7 +243,7 @@ class BodyReadings:
         return (
             f"body {number} of {self.names[kind]} goes {path:.3g} cells in a timestep, at a speed "
             f"of {speed:.4g}; expected at most {most:.3g}, or gaps may be missed: a shorter "
-            "fluid.timestep, weaker forces or a slower swim"
+            "fluid.timestep, weaker forces or a smaller swim.B1"
         )
 
 
