@@ -458,6 +458,14 @@ CASES = {
         "bodies[#1].swim.B1 = -50: it swims by 2.5 cells in a timestep; expected at most 0.35: a "
         "shorter fluid.timestep, or smaller",
     ),
+    "a trap of a fixed place": (
+        2, [DiskBody(radius=3, fixed=("x", "y"), trap=BodyTrap(k=1, angular=1))], {},
+        "bodies[#1].trap.k = 1: not with fixed = ['x', 'y'], which holds it still",
+    ),
+    "a trap of a fixed orientation": (
+        2, [EllipseBody(size=[6, 4], fixed=("orientation",), trap=BodyTrap(angular=2))], {},
+        "bodies[#1].trap.angular = 2: not with fixed = ['orientation'], which holds it still",
+    ),
     "a stiff trap": (
         2, [DiskBody(radius=3, mass=200, trap=BodyTrap(k=1e9))], {},
         "bodies[#1].trap.k = 1000000000: too stiff, it swings by 224 rad in a timestep; expected "

@@ -45,6 +45,7 @@ def bodies(case: Case) -> Iterator[str]:
         key = f"bodies[#{i}]"
         yield from (f"{key}.{problem}" for problem in _shape(case, kind))
         yield from (f"{key}.{problem}" for problem in _vectors(case, kind))
+        yield from (f"{key}.{problem}" for problem in _idle_trap(case, kind))
         yield from (f"{key}.{problem}" for problem in _rows(case, kind))
         yield from (f"{key}.{problem}" for problem in _size(case, kind))
         yield from (f"{key}.{problem}" for problem in _fast(case, kind))
@@ -189,6 +190,17 @@ def _vectors(case: Case, kind: Body) -> Iterator[str]:
                 f"trap.centre = {show(trap.centre)}: outside the box along {axis}; expected 0 to "
                 f"{length:g}"
             )
+
+
+def _idle_trap(case: Case, kind: Body) -> Iterator[str]:
+    """Springs of a trap along what never moves."""
+    if kind.trap is None:
+        return
+    still = all(axis in kind.fixed for axis in case.box.axes), "orientation" in kind.fixed
+    for name, idle in zip(("k", "angular"), still, strict=True):
+        if idle and getattr(kind.trap, name):
+            given = f"trap.{name} = {show(getattr(kind.trap, name))}"
+            yield f"{given}: not with fixed = {show(list(kind.fixed))}, which holds it still"
 
 
 def _is_vector(given: Any) -> bool:
