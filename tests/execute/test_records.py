@@ -26,7 +26,9 @@ take = njit(
     lambda sums, start, i, rows, pattern: records.gather_sums(sums, start, i, rows, pattern)
 )
 put = njit(lambda data, start, count, rows, pattern: put_block(data, start, count, rows, pattern))
-add = njit(lambda cell, rows, sums, count, pattern: add_strip(cell, rows, sums, count, pattern, ()))
+add = njit(
+    lambda cell, rows, sums, count, pattern: add_strip(cell, rows, sums, count, pattern, (), ())
+)
 
 for_every_count = pytest.mark.parametrize("count", range(1, 21))
 cells = st.lists(st.integers(0, CELLS - 1), min_size=LANES, max_size=LANES)

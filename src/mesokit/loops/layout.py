@@ -25,6 +25,7 @@ STRIPS = BLOCK // LANES
 BLOCK_BITS, LANE_BITS = np.uint64(12), np.uint64(8)  # BLOCK = 2^12, LANES = 2^8
 SCRATCH_ROW = LANES + 8
 LINE = 64  # bytes of a cache line
+OF_LINE = LINE // 8  # numbers of a cache line
 QUAD = 4  # numbers of a vector; so many records are turned into rows together
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from mesokit.case.box import slide
 from mesokit.geometry.protocol import exposed, leaps, touches
 from mesokit.geometry.solids.bodies import Bodies
-from mesokit.loops.layout import LANES, QUAD, SCRATCH_ROW, sums_length
+from mesokit.loops.layout import LANES, OF_LINE, QUAD, SCRATCH_ROW, sums_length
 from mesokit.method.mpcd.collision.protocol import collide
 from mesokit.method.mpcd.engine.cpu.bounce import fly_among
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
@@ -15,6 +15,8 @@ from mesokit.method.mpcd.engine.cpu.strips.records import gather, scatter_add
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     add_values,
     count_images,
+    fetch_places,
+    fetch_velocities,
     lane_mass,
     load_particle,
     load_scratch,
@@ -29,10 +31,12 @@ from mesokit.scalar.vector import added_scaled, chosen
 
 
 @scalar
-def gather_strip(cell, coefficients, gathered, pattern):
-    """Bring the coefficients of each particle's cell into rows."""
-    for i in range(0, LANES, QUAD):
-        gather(coefficients, cell, i, gathered, pattern)
+def gather_strip(cell, coefficients, gathered, pattern, soon):
+    """Bring the coefficients of each particle's cell into rows, and fetch places of `soon`."""
+    for i in range(0, LANES, OF_LINE):
+        for k in range(0, OF_LINE, QUAD):
+            gather(coefficients, cell, i + k, gathered, pattern)
+        fetch_places(soon, i)
 
 
 @scalar
@@ -205,14 +209,19 @@ def bin_strip(physics, now, strip, cell, ident, terms_rows):
 
 
 @scalar
-def add_strip(cell, terms_rows, sums, count, terms, tallied):
-    """Add the terms of each particle to the sums of its cell, and count it (see `scatter_add`)."""
+def add_strip(cell, terms_rows, sums, count, terms, tallied, soon):
+    """Add the terms of each particle to the sums of its cell, and count it (see `scatter_add`).
+
+    Meanwhile velocities of the strip `soon` are fetched.
+    """
     width = sums_length(len(terms))
-    together = count - count % QUAD
+    together = count - count % OF_LINE
     # Four lanes at a time as whole vectors, then the rest one by one. Spare lanes are left out:
     # this is where nonsense in them ends.
-    for i in range(0, together, QUAD):
-        scatter_add(sums, cell, i, terms_rows, terms, tallied)
+    for i in range(0, together, OF_LINE):
+        for k in range(0, OF_LINE, QUAD):
+            scatter_add(sums, cell, i + k, terms_rows, terms, tallied)
+        fetch_velocities(soon, i)
     for i in range(together, count):
         start = np.uint64(np.uint32(cell[i])) * np.uint64(width)
         row = terms_rows[len(terms) * SCRATCH_ROW :]

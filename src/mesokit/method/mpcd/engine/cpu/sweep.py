@@ -17,7 +17,7 @@ from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.physics import field_of, of_particles
 from mesokit.method.mpcd.engine.cpu.stress import carried
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
-from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle
+from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle, strip_after
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
 from mesokit.method.mpcd.engine.domains.messages.migrate import note_migrants
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
@@ -57,11 +57,13 @@ def _stream_singles(worker, now, physics, fluid):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
         ids, image = particles.ident[places], particles.image[:, places]
+        soon = strip_after(particles, s, last, zero)
         quiet, left = 0, np.int64(0)
         if now.flags & STREAM:
             quiet = look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
         if now.flags & COLLIDE:
-            stages.gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
+            coefficients = fluid.cells.coefficients
+            stages.gather_strip(cell, coefficients, gathered, physics.coefficients, soon)
         if now.flags & COLLIDE and now.flags & STREAM and not measured:
             left = stages.collide_and_stream_strip(
                 physics, now.old, strip, gathered, quiet, clear, hits
@@ -82,7 +84,7 @@ def _stream_singles(worker, now, physics, fluid):
                 add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
             stages.bin_strip(physics, now, strip, cell, ids, terms)
             tallied = tally(physics.energy, 0.0, zero)
-            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied)
+            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied, soon)
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
             note_migrants(worker, now, physics, fluid, strip, s)
 
@@ -110,7 +112,8 @@ def _stream_molecules(worker, now, physics, fluid):
                 near = clear[k * SCRATCH_ROW : (k + 1) * SCRATCH_ROW]
                 look_around_strip(physics.solid, strip, s, fluid.room, near, zero)
             if now.flags & COLLIDE:
-                stages.gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
+                coefficients = fluid.cells.coefficients
+                stages.gather_strip(cell, coefficients, gathered, physics.coefficients, ())
                 stages.collide_strip(physics, now.old, strip, gathered)
                 if measured and not now.flags & STREAM:
                     add_strip_flux(physics, now.box, now.old, strip, lanes, tensor[1, s])
@@ -139,7 +142,7 @@ def _stream_molecules(worker, now, physics, fluid):
                 add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
             stages.bin_strip(physics, now, strip, cell, particles.ident[places], terms)
             tallied = tally(physics.energy, 0.0, zero)
-            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied)
+            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied, ())
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
             if k == 0:
                 note_migrants(worker, now, physics, fluid, strip, s)

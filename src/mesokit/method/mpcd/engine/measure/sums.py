@@ -99,7 +99,7 @@ def bin_sums(worker, zero, masses, box, particles, bins, sums):
             m = lane_mass(masses, strip, i, 2 * d)
             place[i] = np.int32(bin_at(bins.axes, bins.number, box, r))
             store_scratch(quanta, i, rounded(moments_of(m, v), scales))
-        add_strip(place, quanta, out, lanes_in(filling, b), terms, ())
+        add_strip(place, quanta, out, lanes_in(filling, b), terms, (), ())
 
 
 @scalar

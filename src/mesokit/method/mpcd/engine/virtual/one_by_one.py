@@ -164,7 +164,8 @@ def draw_velocities(virtual, count, worker, now, physics, fluid):
         if now.flags & MEASURE_WALLS:
             take_momentum(virtual, worker, physics, s, strip, fluid.taken.impulse[thread], -1.0)
         bin_strip(physics, now, strip, here, numbers, terms)
-        add_strip(here, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
+        tallied = tally(physics.energy, 0.0, zero)
+        add_strip(here, terms, sums, lanes, physics.terms, tallied, ())
 
 
 @scalar
@@ -186,7 +187,7 @@ def recoil_one_by_one(worker, now, physics, fluid, walls):
         for s in range((virtual.filled[thread] + LANES - 1) // LANES):
             strip = virtual.data[thread][strip_at(s, fluid.particles.rows)]
             here = virtual.cell[thread, s * LANES : (s + 1) * LANES]
-            gather_strip(here, fluid.cells.coefficients, gathered, physics.coefficients)
+            gather_strip(here, fluid.cells.coefficients, gathered, physics.coefficients, ())
             collide_strip(physics, now.grid, strip, gathered)
             take_momentum(virtual, worker, physics, s, strip, impulse, 1.0)
 
