@@ -19,6 +19,7 @@ import numpy as np
 from mesokit.scalar.jit import by_type, scalar
 
 LANES = 256  # particles of a strip, cells of a batch
+LAST_LANE = LANES - 1  # as a mask, it tells the compiler that a lane is not negative
 BLOCK = 4096
 ROW = BLOCK + 8
 STRIPS = BLOCK // LANES

@@ -14,7 +14,7 @@ import numpy as np
 
 from mesokit.case.box import SLIDING, fold
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import LANES, SCRATCH_ROW, record_length, share, sums_length
+from mesokit.loops.layout import LANES, LAST_LANE, SCRATCH_ROW, record_length, share, sums_length
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.collision.protocol import collide
 from mesokit.method.mpcd.engine.bodies.hits import (
@@ -280,7 +280,7 @@ def place_batch(counter, work, keys, waiting, count, zero):
     left, draw = 0, 0
     for j in range(count):
         if work[NUMBER * SCRATCH_ROW + j] > 0.5:
-            wait_for_place(work, keys, waiting, j, left, zero)
+            wait_for_place(work, keys, waiting, j, left & LAST_LANE, zero)
             left += 1
     # Cells that wait are the first entries of columns of their own, so that each draw is one loop
     # over vectors, which are whole. Those that have found a place leave these columns.
@@ -292,11 +292,11 @@ def place_batch(counter, work, keys, waiting, count, zero):
             store_scratch(work, THERMAL * SCRATCH_ROW + n, s)
         still = 0
         for n in range(left):  # no branches, as none could be predicted
-            s, j = load_scratch(work, THERMAL * SCRATCH_ROW + n, zero), waiting[n]
+            s, j = load_scratch(work, THERMAL * SCRATCH_ROW + n, zero), waiting[n] & LAST_LANE
             inside = dot(s, s) < work[BALL * SCRATCH_ROW + j] * work[BALL * SCRATCH_ROW + j]
             before = load_scratch(work, GAS_AT * SCRATCH_ROW + j, zero)
             store_scratch(work, GAS_AT * SCRATCH_ROW + j, chosen(inside, s, before))
-            wait_for_place(work, keys, waiting, j, still, zero)
+            wait_for_place(work, keys, waiting, j, still & LAST_LANE, zero)
             still += 0 if inside else 1
         left, draw = still, draw + 1
 

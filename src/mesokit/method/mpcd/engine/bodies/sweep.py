@@ -9,7 +9,7 @@ import numpy as np
 
 from mesokit.case.box import SLIDING
 from mesokit.kernels.part import stage
-from mesokit.loops.layout import LANES, SCRATCH_ROW, lanes_in, share, strip_at, strips_in
+from mesokit.loops.layout import LANES, LAST_LANE, SCRATCH_ROW, lanes_in, share, strip_at, strips_in
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.near import (
@@ -217,16 +217,15 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
         marks[i] = np.int64(cubes[i])
     for i in range(count if any_near != 0 else 0):
         mark = marks[i]
-        marks[candidates] = i
+        marks[candidates & LAST_LANE] = i
         candidates += mark
     # Most candidates are near one ball alone, and fly past it. That is seen in loops over vectors,
     # with one between them that looks up the ball.
     flights = bodies.columns[thread]
     for j in range(candidates):
-        store_scratch(flights, PLACE_OF * SCRATCH_ROW + j, load_particle(strip, marks[j], 0, zero))
-        store_scratch(
-            flights, VELOCITY_OF * SCRATCH_ROW + j, load_particle(strip, marks[j], d, zero)
-        )
+        i = marks[j] & LAST_LANE
+        store_scratch(flights, PLACE_OF * SCRATCH_ROW + j, load_particle(strip, i, 0, zero))
+        store_scratch(flights, VELOCITY_OF * SCRATCH_ROW + j, load_particle(strip, i, d, zero))
     for j in range(candidates):
         r, v = (
             load_scratch(flights, PLACE_OF * SCRATCH_ROW + j, zero),
