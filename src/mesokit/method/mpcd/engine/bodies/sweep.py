@@ -77,6 +77,7 @@ from mesokit.method.mpcd.engine.where import where
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.streaming import halfway, vector
 from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.prefetch import prefetch
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 KEEP, RESTORE = 0, 1
@@ -233,6 +234,8 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
         )
         flights[PATH_OF * SCRATCH_ROW + j] = longest_flight(bodies, physics, r, v)
         cubes[j] = np.int32(cell_of(bodies, box, r))
+    for j in range(candidates):
+        prefetch(bodies.alone, cubes[j], 0)
     for j in range(candidates):
         look_up_ball(bodies, box, flights, np.int64(cubes[j]), allowance, j, zero)
     for j in range(candidates):
