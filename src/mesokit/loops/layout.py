@@ -3,8 +3,9 @@
 A block (x x x ... y y y ... vx vx vx ...) is one stretch of memory, rows at constant offsets, so
 that LLVM can see that they do not overlap and vectorise the loop over a strip of 256 particles. A
 strip stays in the first-level cache while all stages of a step pass over it, and the next strip
-continues the same rows, which the hardware prefetches. Eight numbers of padding keep rows off the
-same cache set. Loops run over all 256 lanes of a strip; the last, partly filled strip computes
+continues the same rows, which the hardware prefetches. The padding of a row is a strip and a cache
+line long: rows of one strip then lie in different cache sets, of which a strip of a row takes half.
+Loops run over all 256 lanes of a strip; the last, partly filled strip computes
 nonsense in its spare lanes, which nothing ever adds up.
 
 Molecules of N beads lie in groups of N strips in a row: strip k of a group holds bead k of 256
@@ -21,7 +22,7 @@ from mesokit.scalar.jit import by_type, scalar
 LANES = 256  # particles of a strip, cells of a batch
 LAST_LANE = LANES - 1  # as a mask, it tells the compiler that a lane is not negative
 BLOCK = 4096
-ROW = BLOCK + 8
+ROW = BLOCK + LANES + 8
 STRIPS = BLOCK // LANES
 BLOCK_BITS, LANE_BITS = np.uint64(12), np.uint64(8)  # BLOCK = 2^12, LANES = 2^8
 SCRATCH_ROW = LANES + 8
