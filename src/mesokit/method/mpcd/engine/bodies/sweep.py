@@ -59,13 +59,13 @@ from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.physics import field_of, of_bodies
+from mesokit.method.mpcd.engine.cpu.strips.ahead import strip_after
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.one import put_one
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     load_particle,
     load_scratch,
     store_scratch,
-    strip_after,
 )
 from mesokit.method.mpcd.engine.cpu.sweep import add_strip_flux
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
@@ -122,10 +122,10 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
         ids, image = particles.ident[places], particles.image[:, places]
-        soon = strip_after(particles, s, last, zero)
+        following = strip_after(fluid, physics, s, last)
         if now.flags & COLLIDE:
             coefficients = fluid.cells.coefficients
-            stages.gather_strip(cell, coefficients, gathered, physics.coefficients, soon)
+            stages.gather_strip(cell, coefficients, gathered, physics.coefficients, following)
             stages.collide_strip(physics, now.old, strip, gathered)
             if measured and not now.flags & STREAM:
                 add_strip_flux(physics, now.box, now.old, strip, lanes, tensor[1, s])
@@ -151,7 +151,7 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
             for j in range(near):
                 cell[chosen[j]] = fluid.cells.number  # which takes what must not act
             tallied = tally(physics.energy, 0.0, zero)
-            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied, soon)
+            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied, following)
             for j in range(near):
                 cell[chosen[j]] = WAITING
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)

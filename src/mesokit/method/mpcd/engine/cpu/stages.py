@@ -11,12 +11,11 @@ from mesokit.method.mpcd.engine.cpu.bounce import fly_among
 from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW, lanes_together
 from mesokit.method.mpcd.engine.cpu.physics import has_solid, kind_of_solid
+from mesokit.method.mpcd.engine.cpu.strips.ahead import fetch_places, fetch_velocities
 from mesokit.method.mpcd.engine.cpu.strips.records import gather, scatter_add
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     add_values,
     count_images,
-    fetch_places,
-    fetch_velocities,
     lane_mass,
     load_particle,
     load_scratch,
@@ -31,12 +30,12 @@ from mesokit.scalar.vector import added_scaled, chosen
 
 
 @scalar
-def gather_strip(cell, coefficients, gathered, pattern, soon):
-    """Bring the coefficients of each particle's cell into rows, and fetch places of `soon`."""
+def gather_strip(cell, coefficients, gathered, pattern, following):
+    """Bring the coefficients of each particle's cell into rows; ask for the next strip's places."""
     for i in range(0, LANES, OF_LINE):
         for k in range(0, OF_LINE, QUAD):
             gather(coefficients, cell, i + k, gathered, pattern)
-        fetch_places(soon, i)
+        fetch_places(following, i)
 
 
 @scalar
@@ -209,10 +208,10 @@ def bin_strip(physics, now, strip, cell, ident, terms_rows):
 
 
 @scalar
-def add_strip(cell, terms_rows, sums, count, terms, tallied, soon):
+def add_strip(cell, terms_rows, sums, count, terms, tallied, following):
     """Add the terms of each particle to the sums of its cell, and count it (see `scatter_add`).
 
-    Meanwhile velocities of the strip `soon` are fetched.
+    Meanwhile it asks for velocities of the next strip.
     """
     width = sums_length(len(terms))
     together = count - count % OF_LINE
@@ -221,7 +220,7 @@ def add_strip(cell, terms_rows, sums, count, terms, tallied, soon):
     for i in range(0, together, OF_LINE):
         for k in range(0, OF_LINE, QUAD):
             scatter_add(sums, cell, i + k, terms_rows, terms, tallied)
-        fetch_velocities(soon, i)
+        fetch_velocities(following, i)
     for i in range(together, count):
         start = np.uint64(np.uint32(cell[i])) * np.uint64(width)
         row = terms_rows[len(terms) * SCRATCH_ROW :]

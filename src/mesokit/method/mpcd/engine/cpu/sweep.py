@@ -16,8 +16,9 @@ from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREA
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.physics import field_of, of_particles
 from mesokit.method.mpcd.engine.cpu.stress import carried
+from mesokit.method.mpcd.engine.cpu.strips.ahead import strip_after
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
-from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle, strip_after
+from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
 from mesokit.method.mpcd.engine.domains.messages.migrate import note_migrants
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
@@ -57,13 +58,13 @@ def _stream_singles(worker, now, physics, fluid):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
         ids, image = particles.ident[places], particles.image[:, places]
-        soon = strip_after(particles, s, last, zero)
+        following = strip_after(fluid, physics, s, last)
         quiet, left = 0, np.int64(0)
         if now.flags & STREAM:
             quiet = look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
         if now.flags & COLLIDE:
             coefficients = fluid.cells.coefficients
-            stages.gather_strip(cell, coefficients, gathered, physics.coefficients, soon)
+            stages.gather_strip(cell, coefficients, gathered, physics.coefficients, following)
         if now.flags & COLLIDE and now.flags & STREAM and not measured:
             left = stages.collide_and_stream_strip(
                 physics, now.old, strip, gathered, quiet, clear, hits
@@ -84,7 +85,7 @@ def _stream_singles(worker, now, physics, fluid):
                 add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
             stages.bin_strip(physics, now, strip, cell, ids, terms)
             tallied = tally(physics.energy, 0.0, zero)
-            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied, soon)
+            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied, following)
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
             note_migrants(worker, now, physics, fluid, strip, s)
 

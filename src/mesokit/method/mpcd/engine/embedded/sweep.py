@@ -10,9 +10,10 @@ from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
 from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, STREAM
 from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
+from mesokit.method.mpcd.engine.cpu.strips.ahead import strip_after
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.one import put_one
-from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, strip_after
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
 from mesokit.method.mpcd.engine.embedded.near import choose_near, find_beads
 from mesokit.method.mpcd.engine.embedded.state import COUNT
 
@@ -40,10 +41,10 @@ def stream_around(worker, now, physics, fluid, beads):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
         ids = particles.ident[places]
-        soon = strip_after(particles, s, last, zero)
+        following = strip_after(fluid, physics, s, last)
         if now.flags & COLLIDE:
             coefficients = fluid.cells.coefficients
-            stages.gather_strip(cell, coefficients, gathered, physics.coefficients, soon)
+            stages.gather_strip(cell, coefficients, gathered, physics.coefficients, following)
             stages.collide_strip(physics, now.old, strip, gathered)
         if now.flags & STREAM:
             near = choose_near(worker, now, physics, beads, strip, s, lanes, chosen)
@@ -60,7 +61,7 @@ def stream_around(worker, now, physics, fluid, beads):
             for j in range(near):
                 cell[chosen[j]] = fluid.cells.number  # which takes what must not act
             tallied = tally(physics.energy, 0.0, zero)
-            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied, soon)
+            stages.add_strip(cell, terms, sums, lanes, physics.terms, tallied, following)
 
 
 @stage

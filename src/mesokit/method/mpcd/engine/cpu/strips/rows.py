@@ -2,50 +2,11 @@
 
 # ruff: noqa: F401  the lines below, which are written out as text, use what is imported here
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
-from mesokit.loops.layout import ROW, SCRATCH_ROW, strip_at
-from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
+from mesokit.loops.layout import ROW, SCRATCH_ROW
+from mesokit.scalar.jit import by_type, elementwise, for_each
 from mesokit.scalar.pointer import is_address, put_reals, reals
-from mesokit.scalar.prefetch import prefetch
-
-
-class Soon(NamedTuple):
-    """A strip that will be worked on soon: all data, where it begins, and a vector's pattern."""
-
-    data: Any
-    start: int
-    pattern: tuple
-
-
-@scalar
-def strip_after(particles, s, last, pattern):
-    """The strip after s, which is to be fetched; of the last strip itself."""
-    return Soon(particles.data, strip_at(min(s + 1, last - 1), particles.rows).start, pattern)
-
-
-@by_type
-def fetch_places(soon, i):
-    """Bring the cache lines with the place of lane i into the cache; `soon` is () for nothing."""
-    if len(soon) == 0:
-        return lambda soon, i: None
-    return lambda soon, i: _fetch(soon, 0, i)
-
-
-@by_type
-def fetch_velocities(soon, i):
-    """The same with its velocity."""
-    if len(soon) == 0:
-        return lambda soon, i: None
-    return lambda soon, i: _fetch(soon, len(soon.pattern), i)
-
-
-@scalar
-def _fetch(soon, row, i):
-    for k in range(len(soon.pattern)):
-        prefetch(soon.data, soon.start + (row + k) * ROW + i, 0)
 
 
 @elementwise
