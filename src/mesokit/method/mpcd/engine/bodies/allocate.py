@@ -14,12 +14,15 @@ from mesokit.loops.layout import LANES, SCRATCH_ROW, zeros
 from mesokit.method.mpcd.body.protocol import Body, Squirming
 from mesokit.method.mpcd.body.substeps import needed_substeps
 from mesokit.method.mpcd.engine.bodies import state
+from mesokit.method.mpcd.engine.bodies.near import LISTS_HOLD, LONGEST_REACH, PARTNERS_HOLD
 from mesokit.method.mpcd.engine.bodies.state import MovingBodies
 from mesokit.method.mpcd.engine.cpu.grid import Grid
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
 from mesokit.method.mpcd.groups import fluid_mass_density
 from mesokit.scalar.pointer import address
 
+LISTED = 6.0  # thermal velocities: lists hold flights so fast; faster ones are tried by all bodies
+STRIDES = 0.05  # cells: surfaces rarely go farther in a timestep
 FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
 NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a run
 ROOM = 2.0  # times as many particles near bodies as there are on average
@@ -169,6 +172,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
         grid=Grid(zero, zero, cells, tuple(1.0 / c for c in cells)),
         halves=Grid(zero, zero, tuple(2.0 * c for c in cells), tuple(0.5 / c for c in cells)),
         cubes=zeros((threads, LANES), np.int32),
+        list_reach=reach_of_lists(case, LISTED * thermal + further + shear),
         near_count=np.zeros(near, np.int32),
         near=np.zeros((near, state.MOST_NEAR_CELL), np.int32),
         alone=np.full(near, state.NO_BODY, np.int32),
@@ -198,6 +202,16 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
         pull=balancing_pull(case),
         messages=() if domain is None else domain.body_messages(n, state.SUMS),
     )
+
+
+def reach_of_lists(case: Case, flight: float) -> float:
+    """How near a surface is to a cell that has its body on the list: as far as a flight goes, and
+    with solutes as far as the potential of gaps."""
+    far = flight
+    if case.solutes is not None:
+        gaps = (kind.interaction.range for kind in case.bodies if kind.interaction.depth)
+        far = max(flight, PARTNERS_HOLD + max(gaps, default=0.0))
+    return min(LISTS_HOLD + STRIDES + far, LONGEST_REACH)
 
 
 def surface_bound(radius: Floats, d: int) -> Floats:

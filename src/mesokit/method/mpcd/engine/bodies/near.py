@@ -43,11 +43,10 @@ from mesokit.scalar.vector import added_scaled, dot, scaled
 
 HALF_DIAGONAL = 0.5 * math.sqrt(3.0)  # of a cell, in 3D
 BEYOND = 1e6  # a path that lists never hold
-LIST_REACH = 1.5  # cells: lists have the bodies whose surface is so near
+LONGEST_REACH = 2.0  # cells: the farthest that lists reach (see `MovingBodies.list_reach`)
 LISTS_HOLD = 0.25  # cells: lists are made anew when a surface has gone so far
 PARTNERS_HOLD = 0.6  # cells: the farthest that surfaces may go with one list of partners
 PARTS = 64.0  # of a cell: what is clear is kept in whole numbers of these
-FAR = np.uint8(LIST_REACH * PARTS)
 # Where scratch memory has how far surfaces go with one list, and how far images have slid.
 FARTHEST, ALLOWANCE, SLID = 250, 251, 252
 SEVERAL, NO_BODIES = -2, -2  # in the table of single bodies; as a list (see `list_of`)
@@ -151,12 +150,12 @@ def slides(box):
 @seldom
 def list_by_cells(worker, box, bodies, zero):
     """The bodies near each cell of this thread's share of the cells, and what is clear there."""
-    cells, d = len(bodies.near_count) - 1, len(zero)
+    cells, d, far = len(bodies.near_count) - 1, len(zero), in_parts(bodies, bodies.list_reach)
     first, last = share(cells, worker.thread, worker.threads)
     for cell in range(first, last):
         bodies.near_count[cell], bodies.alone[cell] = 0, NO_BODY
         for cube in range(1 << d):
-            bodies.clear[half_of(bodies, cell, cube, d)] = FAR
+            bodies.clear[half_of(bodies, cell, cube, d)] = far
     # Body by body, the cells of a cube about it. A thread writes the lists of its own cells only,
     # and bodies come in the order of their numbers.
     for i in range(len(bodies.rows)):
@@ -167,11 +166,11 @@ def list_by_cells(worker, box, bodies, zero):
 def list_around(bodies, box, i, mine, zero):
     """Put body i on the lists of those of my cells that its surface comes near."""
     d, x, radius = len(zero), load(bodies.rows, i, PLACE, zero), of_kind(bodies, i, state.REACH)
-    reach = LIST_REACH + HALF_DIAGONAL + (0.5 if slides(box) else 0.0)
+    reach = bodies.list_reach + HALF_DIAGONAL + (0.5 if slides(box) else 0.0)
     low, high = zero, zero
     for k in range(d):
-        low = with_item(low, k, floor(x[k] - radius - LIST_REACH))
-        high = with_item(high, k, floor(x[k] + radius + LIST_REACH))
+        low = with_item(low, k, floor(x[k] - radius - bodies.list_reach))
+        high = with_item(high, k, floor(x[k] + radius + bodies.list_reach))
     depth = int(high[d - 1] - low[d - 1]) + 1 if d == 3 else 1  # along z
     middle, kind, q = zero, bodies.kind[i], load(bodies.rows, i, TURN, state.FOUR)
     for c in range(depth):
@@ -247,9 +246,14 @@ def clear_cubes(bodies, box, kind, q, cell, s):
             - 0.5 * HALF_DIAGONAL
             - (0.5 if slides(box) else 0.0)
         )
-        clear = np.uint8(int(min(max(c, 0.0), LIST_REACH) * PARTS))
         place = half_of(bodies, cell, cube, d)
-        bodies.clear[place] = min(bodies.clear[place], clear)
+        bodies.clear[place] = min(bodies.clear[place], in_parts(bodies, c))
+
+
+@scalar
+def in_parts(bodies, distance):
+    """What is clear, in whole parts of a cell, as far as lists reach."""
+    return np.uint8(int(min(max(distance, 0.0), bodies.list_reach) * PARTS))
 
 
 @scalar
@@ -332,7 +336,7 @@ def list_of(bodies, cell, reach):
     the last two no list is fetched.
     """
     one = np.int64(bodies.alone[cell])
-    if reach >= LIST_REACH or (one == SEVERAL and bodies.near_count[cell] == EVERY_BODY):
+    if reach >= bodies.list_reach or (one == SEVERAL and bodies.near_count[cell] == EVERY_BODY):
         return np.int64(EVERY_BODY)
     return np.int64(cell) if one == SEVERAL else NO_BODIES + NO_BODY - one
 

@@ -83,10 +83,11 @@ class MovingBodies(NamedTuple):
     may add to the path of a particle in a timestep. twice: 1 where hits are found once more with
     the mean motion, else 0.
     grid: cells of the box, without shift; halves: cubes of half the size; cubes (threads, LANES):
-    scratch memory; near_count (cells + 1,), near (cells + 1, MOST_NEAR_CELL): the bodies near each
-    cell; alone (cells + 1,): the only body on its list, NO_BODY or SEVERAL; clear (cubes + 1,): the
-    distance that is clear around each cube. partner_count (bodies,), partners (bodies,
-    MOST_PARTNERS): other bodies that may come near.
+    scratch memory; list_reach: the lists have the bodies whose surface is so near, and nearly all
+    flights in a timestep are shorter; near_count (cells + 1,), near (cells + 1, MOST_NEAR_CELL):
+    the bodies near each cell; alone (cells + 1,): the only body on its list, NO_BODY or SEVERAL;
+    clear (cubes + 1,): the distance that is clear around each cube. partner_count (bodies,),
+    partners (bodies, MOST_PARTNERS): other bodies that may come near.
     values (threads, most, NEAR_COLUMNS), numbers (threads, most, NEAR_NUMBERS): particles near.
     sums (threads, bodies, SUMS): of the hits in hand; taken (threads, bodies, 6): impulses, in
     whole numbers. gas (threads, most, GAS_COLUMNS): virtual particles, of gas_mass, or all of a
@@ -118,6 +119,7 @@ class MovingBodies(NamedTuple):
     grid: tuple
     halves: tuple
     cubes: Any
+    list_reach: float
     near_count: Any
     near: Any
     alone: Any

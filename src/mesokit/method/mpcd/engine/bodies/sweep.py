@@ -15,7 +15,6 @@ from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.near import (
     ALLOWANCE,
     BEYOND,
-    LIST_REACH,
     PARTS,
     SEVERAL,
     bodies_near,
@@ -324,7 +323,7 @@ def look_up_ball(bodies, box, flights, cell, allowance, j, zero):
     Where none is, or the particle takes a counter-force, it is one of radius BEYOND.
     """
     x, u, radius, r = zero, zero, BEYOND, load_scratch(flights, PLACE_OF * SCRATCH_ROW + j, zero)
-    holds = flights[PATH_OF * SCRATCH_ROW + j] + allowance < LIST_REACH
+    holds = flights[PATH_OF * SCRATCH_ROW + j] + allowance < bodies.list_reach
     i = np.int64(bodies.alone[cell]) if holds else np.int64(SEVERAL)
     ball = i >= 0 and of_kind(bodies, i, IS_BALL) > 0.5
     if ball and not takes_counter(bodies, box, cell, r):
