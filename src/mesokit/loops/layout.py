@@ -1,14 +1,14 @@
 """The layout of particles in memory: blocks of 4096, each with one row per coordinate and velocity.
 
 A block (x x x ... y y y ... vx vx vx ...) is one stretch of memory, rows at constant offsets, so
-that LLVM can see that they do not overlap and vectorise the loop over a strip of 256 particles. A
+that LLVM can see that they do not overlap and vectorise the loop over a strip of 128 particles. A
 strip stays in the first-level cache while all stages of a step pass over it, and the next strip
 continues the same rows, which the hardware prefetches. The padding of a row is a strip and a cache
-line long: rows of one strip then lie in different cache sets, of which a strip of a row takes half.
-Loops run over all 256 lanes of a strip; the last, partly filled strip computes
-nonsense in its spare lanes, which nothing ever adds up.
+line long, so that the rows of one strip lie in different cache sets. Loops run over all 128 lanes
+of a strip; the last, partly filled strip computes nonsense in its spare lanes, which nothing ever
+adds up.
 
-Molecules of N beads lie in groups of N strips in a row: strip k of a group holds bead k of 256
+Molecules of N beads lie in groups of N strips in a row: strip k of a group holds bead k of 128
 molecules, one to a lane, so that forces between beads need no gathers. A group may reach from one
 block into the next; the last one may be partly filled. Single particles are molecules of one bead.
 """
@@ -19,12 +19,12 @@ import numpy as np
 
 from mesokit.scalar.jit import by_type, scalar
 
-LANES = 256  # particles of a strip, cells of a batch
+LANES = 128  # particles of a strip, cells of a batch
 LAST_LANE = LANES - 1  # as a mask, it tells the compiler that a lane is not negative
 BLOCK = 4096
 ROW = BLOCK + LANES + 8
 STRIPS = BLOCK // LANES
-BLOCK_BITS, LANE_BITS = np.uint64(12), np.uint64(8)  # BLOCK = 2^12, LANES = 2^8
+BLOCK_BITS, LANE_BITS = np.uint64(12), np.uint64(7)  # BLOCK = 2^12, LANES = 2^7
 SCRATCH_ROW = LANES + 8
 LINE = 64  # bytes of a cache line
 OF_LINE = LINE // 8  # numbers of a cache line

@@ -100,7 +100,7 @@ def _stream_molecules(worker, now, physics, fluid):
     # The box in which images were counted.
     before = at_time(now.box, (now.counter.step - 1) * physics.timestep)
     first, last = share(groups_in(particles.filling), worker.thread, worker.threads)
-    # A group is one strip for each bead of 256 molecules. Strips collide on their own. For the
+    # A group is one strip for each bead of 128 molecules. Strips collide on their own. For the
     # flight with its sub-steps, WIDTH molecules at a time are copied to rows that stay in the
     # first-level cache. Then strips find their cells, as for single particles.
     for g in range(first, last):
