@@ -134,6 +134,12 @@ WARNED = {
         [60, 60], [DiskBody(radius=8, swim=Squirming(B1=0.2))], {}, "bodies[#1]: expected to move "
         "at Reynolds number 1.3: above 1 inertia changes its flow and speed; a smaller B1",
     ),
+    "inertial": (
+        [40, 40],
+        [DiskBody(radius=2, force=[2, 0], frame="body", counter=CounterForce(at=[-5, 0]))], {},
+        "bodies[#1]: expected U d/nu = 0.1, of its speed and the distance of its counter-force; "
+        "above 0.05 inertia takes or gives more than a tenth of the speed; a smaller force",
+    ),
     "stiff": (
         [20, 20], [DiskBody(radius=3, mass=400, trap=BodyTrap(k=160_000))], {},
         "bodies[#1].trap.k = 160000: it swings by 2 rad in a timestep; above 0.5 its velocity is "

@@ -39,6 +39,7 @@ FAST_BODY = 0.2  # speeds of sound
 SWING = 0.5  # radians of a trap in a timestep; at 2 the velocity is 1.3 times as hot
 HEAVY = 10.0  # masses of the displaced fluid
 INERTIAL = 1.0  # Reynolds number of the speed and the radius
+INERTIAL_PAIR = {2: 0.05, 3: 0.5}  # U d/nu of a dumbbell: a tenth of its speed
 HOT_GAPS = 0.03  # kT a step: disks with 0.1 were 2.6 +- 1.4 % too hot, a run with 0.2 stopped
 LONG_STRIDE = 0.25  # radii that a body flies in a timestep
 TURBULENT = 2000  # Reynolds number of a pipe, of the mean velocity and the diameter
@@ -333,6 +334,15 @@ def _fast_bodies(case: Case) -> Iterator[str]:
                 f"bodies[#{i}]: expected to move at Reynolds number {found.reynolds:.2g}: above "
                 f"{INERTIAL:g} inertia changes its flow and speed; a smaller {less}"
             )
+        if kind.counter is not None and kind.counter.at is not None:
+            d = case.box.dimension
+            apart = found.reynolds * math.hypot(*kind.counter.at) / kind.solid(d).radius
+            if _above(apart, INERTIAL_PAIR[d]):
+                yield (
+                    f"bodies[#{i}]: expected U d/nu = {apart:.2g}, of its speed and the distance "
+                    f"of its counter-force; above {INERTIAL_PAIR[d]:g} inertia takes or gives more "
+                    "than a tenth of the speed; a smaller force"
+                )
 
 
 def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
