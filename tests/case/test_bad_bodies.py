@@ -118,7 +118,8 @@ FILES = {
         for rows in ("5", "[5, 5]", "[[nan, 3, 3]]", "[[true, 3, 3]]", "[['a', 3, 3]]")
     },
     SPACE + BALL + "start = { orientations = [[1, 1, 0, 0]] }\n":
-        "bodies[#1].start.orientations[#1] = [1, 1, 0, 0]: expected a unit quaternion",
+        "bodies[#1].start.orientations[#1] = [1, 1, 0, 0]: expected a unit quaternion, not one of "
+        "length 1.414",
     SPACE + '[[bodies]]\nshape = "union"\nparts = [{ shape = "sphere", centre = [0, 0, 0], '
     'radius = 2, fluid = "inside" }]\n': "bodies[#1].parts[#1].fluid = 'inside': expected a solid",
     **{

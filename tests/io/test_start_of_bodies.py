@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit import Case, CaseError, Start
+from mesokit import Box, Case, CaseError, Run, Start
 from mesokit.case.trajectory import Trajectory
 from mesokit.method.mpcd.body.protocol import BodyStart
+from mesokit.method.mpcd.body.sphere import SphereBody
 from mesokit.method.mpcd.start.bodies import first_bodies
 from mesokit.run.simulation import Simulation
 from tests.helpers.moving_disks import with_a_plank
@@ -73,6 +74,13 @@ def test_bodies_of_a_run_may_start_among_a_new_fluid(ended):
     found = first_bodies(replace(held, bodies=kinds))
     np.testing.assert_array_equal(found.velocities[:, 0], bodies.velocities[:, 0])
     assert not found.velocities[:, 1].any() and not found.spins.any()
+
+
+def test_a_quaternion_of_three_digits_is_a_unit_one():
+    start = BodyStart(rule="given", positions=[[4, 4, 4]], orientations=[[0.707, 0, 0, -0.707]])
+    case = Case(run=Run(steps=1), box=Box([9, 9, 9]), bodies=(SphereBody(radius=2, start=start),))
+    root = np.sqrt(0.5)
+    np.testing.assert_allclose(first_bodies(case).turns, [[root, 0, 0, -root]], rtol=1e-15)
 
 
 @pytest.mark.parametrize("frame", [None, 1])

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Direction = Literal["x", "y", "z", "orientation"]
+NEARLY_UNIT = 1e-3  # error of the length of a quaternion, which rows of three digits have
 RANDOM, LATTICE, GIVEN, RUN, FILE = "random", "lattice", "given", "run", "file"
 
 
@@ -197,8 +198,11 @@ class BodyStart:
             raise ValueError("moving = false: only with rule = 'run' or 'file'")
         rows = self.orientations
         for i, row in enumerate(() if rows is None or isinstance(rows, str) else rows, start=1):
-            if len(row) == 4 and abs(math.fsum(x * x for x in row) - 1.0) > 1e-6:
-                raise ValueError(f"orientations[#{i}] = {show(row)}: expected a unit quaternion")
+            if len(row) == 4 and abs(math.hypot(*row) - 1.0) > NEARLY_UNIT:
+                raise ValueError(
+                    f"orientations[#{i}] = {show(row)}: expected a unit quaternion, not one of "
+                    f"length {math.hypot(*row):.4g}"
+                )
 
     @property
     def known_elsewhere(self) -> bool:

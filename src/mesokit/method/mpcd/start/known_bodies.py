@@ -12,7 +12,7 @@ from mesokit.case.given.array_file import EXPECTED, array_in_file
 from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.method.mpcd.body.protocol import RUN, Body, named
+from mesokit.method.mpcd.body.protocol import NEARLY_UNIT, RUN, Body, named
 from mesokit.method.mpcd.start.snapshot import require_box
 
 Floats = NDArray[np.float64]
@@ -112,11 +112,12 @@ def _about_z(angle: Floats) -> Floats:
 def _units(key: str, turns: Floats) -> Floats:
     """Quaternions (n, 4), made unit ones where rounding has changed them. Raises CaseError."""
     size = np.linalg.norm(turns, axis=1)
-    off = ~(np.abs(size - 1.0) < ROUNDING)
+    off = ~(np.abs(size - 1.0) <= NEARLY_UNIT)
     if off.any():
         row = int(np.argmax(off))
         raise CaseError(
-            f"{key}orientations: row {row} = {show(turns[row].tolist())} is no unit quaternion"
+            f"{key}orientations: row {row} = {show(turns[row].tolist())}: expected a unit "
+            f"quaternion, not one of length {size[row]:.4g}"
         )
     unit: Floats = turns / size[:, None]
     return unit
