@@ -150,7 +150,7 @@ def slides(box):
 @seldom
 def list_by_cells(worker, box, bodies, zero):
     """The bodies near each cell of this thread's share of the cells, and what is clear there."""
-    cells, d, far = len(bodies.near_count) - 1, len(zero), in_parts(bodies, bodies.list_reach)
+    cells, d, far = len(bodies.near_count) - 1, len(zero), parts_clear(bodies, bodies.list_reach)
     first, last = share(cells, worker.thread, worker.threads)
     for cell in range(first, last):
         bodies.near_count[cell], bodies.alone[cell] = 0, NO_BODY
@@ -247,11 +247,11 @@ def clear_cubes(bodies, box, kind, q, cell, s):
             - (0.5 if slides(box) else 0.0)
         )
         place = half_of(bodies, cell, cube, d)
-        bodies.clear[place] = min(bodies.clear[place], in_parts(bodies, c))
+        bodies.clear[place] = min(bodies.clear[place], parts_clear(bodies, c))
 
 
 @scalar
-def in_parts(bodies, distance):
+def parts_clear(bodies, distance):
     """What is clear, in whole parts of a cell, as far as lists reach."""
     return np.uint8(int(min(max(distance, 0.0), bodies.list_reach) * PARTS))
 
