@@ -120,6 +120,9 @@ FILES = {
     SPACE + BALL + "start = { orientations = [[1, 1, 0, 0]] }\n":
         "bodies[#1].start.orientations[#1] = [1, 1, 0, 0]: expected a unit quaternion, not one of "
         "length 1.414",
+    SPACE + '[[bodies]]\nshape = "union"\nparts = [' + ", ".join(
+        f'{{ shape = "sphere", centre = [{x}, 0, 0], radius = 2 }}' for x in (0, 3, 0)
+    ) + "]\n": "bodies[#1].parts[#3]: the same as parts[#1]; expected another part",
     SPACE + '[[bodies]]\nshape = "union"\nparts = [{ shape = "sphere", centre = [0, 0, 0], '
     'radius = 2, fluid = "inside" }]\n': "bodies[#1].parts[#1].fluid = 'inside': expected a solid",
     **{

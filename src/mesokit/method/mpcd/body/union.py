@@ -27,6 +27,9 @@ class UnionBody(Body):
         for i, part in enumerate(self.parts, start=1):
             if part.fluid == "inside":
                 raise ValueError(f"parts[#{i}].fluid = 'inside': expected a solid")
+            if part in self.parts[: i - 1]:
+                first = self.parts.index(part) + 1
+                raise ValueError(f"parts[#{i}]: the same as parts[#{first}]; expected another part")
 
     def region(self) -> Region:
         return region.union(region_of_part(part) for part in self.parts)
