@@ -23,6 +23,7 @@ from mesokit.seam.method import BodyShape, method_of
 GRID = 128  # samples along the sides of a square that holds an outline
 COLOURS = 4  # of kinds, one after the other
 SHORT = 0.3  # of its half length: an arrow that is cut to less is drawn whole
+ARROWS = "arrows: the way they swim"
 ARROW = 0.6  # of half the length of a body that swims: half its arrow
 
 
@@ -109,17 +110,18 @@ class BodyFrames:
         return float(np.median(away / sizes)) * span / (lag * gap)
 
     def where(self, solid: bool) -> str:
-        """Caption: where bodies are cut; in space which are shown, and which end is dark."""
+        """Caption: where bodies are cut, or which are shown, and what shows the way they swim."""
+        swimming = any(shape.forward for shape in self.shapes)
         if self.third is None or self.plane is None:
-            return ""
+            return ARROWS if swimming else ""
         words, sign = [], "<" if towards(self.columns) > 0 else ">"
         place = f"{self.plane:g}{in_cells()}$"
         if not solid:
             words = [f"cut at ${AXES[self.third]} = {place}"]
         elif self.behind:
             words = [f"those at ${AXES[self.third]} {sign} {place}"]
-        if solid and any(shape.forward for shape in self.shapes):
-            words.append("dark: their front, where it can be seen")
+        if swimming:
+            words.append("dark: their front, where it can be seen" if solid else ARROWS)
         return "; ".join(words)
 
     def _traces(self, last: int) -> Array:
