@@ -76,6 +76,12 @@ FILES = {
     SPACE + BALL + 'fixed = "x"\n': "bodies[#1].fixed = 'x': expected a list",
     SPACE + BALL + 'name = "2"\n':
         "bodies[#1].name = '2': expected a name that is no number: kinds have numbers as well",
+    **{
+        SPACE + BALL + f'name = "{name}"\n':
+        f"bodies[#1].name = '{name}': expected letters, digits, '-', '_', '+' and '.' alone: files "
+        "of trajectories have it as one word"
+        for name in ("a b", "../a", "\\ta")
+    },
     SPACE + BALL + 'name = ""\n':
         "bodies[#1].name = '': expected a longer text, length at least 1",
     SPACE + BALL + 'counter_force = "yes"\n':

@@ -268,10 +268,10 @@ def test_an_arrow_crosses_the_gap_of_two_parts():
 
 
 @pytest.mark.parametrize(
-    "names", [["a", "b"], ["long name " * 3] * 4, [f"kind-{k}" for k in "abcdefghi"]]
+    "names", [["a", "b"], ["long-name-" * 3] * 4, [f"kind-{k}" for k in "abcdefghi"]]
 )
 def test_a_legend_of_many_kinds_stays_in_the_figure(names):
-    disks = [DiskBody(radius=2, name=f"{name} {k}") for k, name in enumerate(names)]
+    disks = [DiskBody(radius=2, name=f"{name}-{k}") for k, name in enumerate(names)]
     case = make_case((60, 60), bodies=disks)
     places = [[6 + 6 * k, 30] for k in range(len(names))]
     figure = picture(case, {}, frames_of(case, places), "bodies")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import numbers
+import re
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
@@ -298,9 +299,14 @@ class Body(ABC):
 
     @field_validator("name")
     @classmethod
-    def _no_number(cls, name: str | None) -> str | None:
+    def _one_word(cls, name: str | None) -> str | None:
         if name is not None and name.isdigit():
             raise ValueError("expected a name that is no number: kinds have numbers as well")
+        if name is not None and not re.fullmatch(r"[\w.+-]+", name):
+            raise ValueError(
+                "expected letters, digits, '-', '_', '+' and '.' alone: files of "
+                "trajectories have it as one word"
+            )
         return name
 
     @field_validator("fixed")
