@@ -126,6 +126,10 @@ WARNED = {
         [20, 20], [DiskBody(radius=3, fixed=["orientation"], torque=1)], {},
         "bodies[#1].torque = 1: the orientation is fixed, so that it turns nothing",
     ),
+    "across its hinge": (
+        [20, 20, 20], [SphereBody(radius=3, hinge=[0, 0, 2], torque=[3, 0, 0])], {},
+        "bodies[#1].torque = [3, 0, 0]: it acts across hinge = [0, 0, 2], so that it turns nothing",
+    ),
     "fast for sound": (
         [20, 20], [DiskBody(radius=1, swim=Squirming(B1=0.6))], {}, "bodies[#1]: expected to move "
         "at Mach number 0.3: above 0.2 the fluid is compressible; a smaller B1",
