@@ -116,6 +116,23 @@ def test_a_file_of_another_program_has_spins_of_bodies_of_any_shape(tmp_path):
     np.testing.assert_allclose(read(str(tmp_path / "one.gsd")).spins[0], expected, rtol=1e-6)
 
 
+def test_a_kind_that_is_named_must_be_in_the_file(tmp_path):
+    frame, path = gsd.hoomd.Frame(), str(tmp_path / "one.gsd")
+    frame.configuration.box = [9, 9, 9, 0, 0, 0]
+    frame.particles.N, frame.particles.position, frame.particles.types = 1, [[0, 0, 0]], ["A"]
+    with gsd.hoomd.open(path, mode="w") as file:
+        file.append(frame)
+
+    def places(**more):
+        ball = SphereBody(radius=2, start=BodyStart(rule="file", file=path, **more))
+        return first_bodies(Case(run=Run(steps=1), box=Box([9, 9, 9]), bodies=(ball,))).places
+
+    np.testing.assert_allclose(places(), [[4.5, 4.5, 4.5]])
+    np.testing.assert_allclose(places(kind="A"), [[4.5, 4.5, 4.5]])
+    with pytest.raises(CaseError, match=r"it has no particles of type 'zz'; it has 'A'$"):
+        places(kind="zz")
+
+
 def test_arrays_have_bodies(ended, tmp_path):
     bodies, n = ended.engine.bodies, 3
     arrays = {

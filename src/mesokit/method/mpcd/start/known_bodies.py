@@ -181,7 +181,7 @@ def _of_file(case: Case, kind: Body, wanted: str) -> KnownBodies:
         raise CaseError(f"ending {show(Path(start.file).suffix)}: expected '.gsd'")
     there = gsd_file.read(start.file, start.frame)
     require_box(case, there)
-    rows = _rows_of_kind(there, kind.number, wanted)
+    rows = _rows_of_kind(there, kind.number, wanted, start.kind is not None)
     closed = closed_axes(case.walls)
     size = np.array(case.box.size, float)
     places = (there.positions - there.low)[rows, :d]
@@ -197,13 +197,16 @@ def _of_file(case: Case, kind: Body, wanted: str) -> KnownBodies:
     )
 
 
-def _rows_of_kind(there: Snapshot, number: int, wanted: str) -> NDArray[np.int64]:
-    """Particles of a type of this name, or all where there is none. Raises CaseError."""
+def _rows_of_kind(there: Snapshot, number: int, wanted: str, sure: bool) -> NDArray[np.int64]:
+    """Particles of a type of this name; without one, all of a single type, unless `sure` of it.
+
+    Raises CaseError.
+    """
     assert there.kinds is not None
     rows, of = np.flatnonzero(there.kinds == wanted), f" of type {show(wanted)}"
     if not len(rows):
         names = sorted(set(there.kinds.tolist()))
-        if len(names) > 1:
+        if sure or len(names) > 1:
             raise CaseError(f"it has no particles{of}; it has {one_of(names)}")
         rows, of = np.arange(len(there.kinds)), ""
     if len(rows) != number:
