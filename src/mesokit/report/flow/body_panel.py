@@ -54,7 +54,7 @@ def draw_over(ax: Any, bodies: Bodies) -> None:
     from matplotlib.collections import PathCollection
     from matplotlib.path import Path
 
-    _traces(ax, bodies, ABOVE - 0.2)
+    _traces(ax, bodies, ABOVE + 0.05)
     if not bodies.outlines:
         return
     paths = [Path.make_compound_path(*map(Path, lines)) for lines in bodies.outlines]
@@ -74,7 +74,7 @@ def draw_over(ax: Any, bodies: Bodies) -> None:
 
 
 def _traces(ax: Any, bodies: Bodies, above: float) -> None:
-    """The paths of their centres, below them."""
+    """The paths of their centres."""
     from matplotlib.collections import LineCollection
 
     for colour, width in (("white", TRACE + HALO), ("black", TRACE)):
