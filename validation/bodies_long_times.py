@@ -73,7 +73,7 @@ def boxes(page: Page) -> None:
         c = found(files["body-displacement"], "diffusion coefficient")
         known = 1 / theory.sphere_friction_in_cube(RADIUS, side, eta, slip)
         wide = (1 + slip / (RADIUS + 2 * slip)) / (6 * math.pi * eta * RADIUS)
-        rows.append(renamed(c, f"L = {side}: D", f"{note}, lags up to {lag}", known))
+        rows.append(renamed(c, f"L = {side}: D", f"{note}, lags up to {lag} steps", known))
         met(page, rows[-1].what, rows[-1], 5)
         points.append((known / wide, c.measured, c.error))
     factor, value, error = np.array(points).T
