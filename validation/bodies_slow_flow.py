@@ -353,8 +353,7 @@ def inertia(page: Page) -> None:
         rows.append(Comparison(f"side {side}: over 0.15 |beta| Re; theory: the estimate",
                                (pusher - puller) / total / known, error / known, left)
                     )  # fmt: skip
-        if side == 24:
-            met(page, f"pusher and puller: {rows[-2].what}", rows[-2], 10)
+        met(page, f"pusher and puller: {rows[-2].what}", rows[-2], 10)
     page.table(rows)
 
 

@@ -573,11 +573,12 @@ STARTS = {
     "disks on one lattice": (
         [DiskBody(radius=3, start=BodyStart(rule="lattice")) for _ in range(2)], {},
         "bodies[#2].start: its body 1 overlaps body 1 of bodies[#1], or is nearer than 0.15 cells "
-        "to it",
+        "to it; expected fewer or smaller bodies",
     ),
     "a lattice that touches": (
         [DiskBody(radius=1.5, number=100, start=BodyStart(rule="lattice"))], {},
-        "bodies[#1].start: its body 2 overlaps body 1, or is nearer than 0.15 cells to it",
+        "bodies[#1].start: its body 2 overlaps body 1, or is nearer than 0.15 cells to it; "
+        "expected fewer or smaller bodies",
     ),
     "flat on a plate": ([EllipseBody(**OVAL, start=given([10, 2.1]))], SLIT, ""),
     "in a plate": (

@@ -58,7 +58,7 @@ def test_each_kind_has_a_row():
     )
     rows = {name: (value, word) for name, value, word in summary(case).rows}
     assert rows["bodies disk-1"] == ("2", "radius 3 a, mass 282.7, volume fraction 0.141")
-    assert rows["bodies rod"] == ("1", "radius 3 a, mass 99, volume fraction 0.0279")
+    assert rows["bodies rod"] == ("1", "reach 3 a, mass 99, volume fraction 0.0279")
 
 
 def test_the_fraction_is_of_what_walls_leave():

@@ -190,8 +190,9 @@ def body_rows(case: Case) -> list[Row]:
     for name, kind in named(case.bodies):
         solid, mass = kind.solid(d), kind.mass_in(d, fluid.density * fluid.mass)
         share = kind.number * solid.volume / free_volume(case)
-        radius = f"radius {solid.radius:.4g} a, mass {mass:.4g}, volume fraction {share:.3g}"
-        rows.append((f"bodies {name}", f"{kind.number:,}".replace(",", " "), radius))
+        far = f"{'radius' if solid.ball else 'reach'} {solid.radius:.4g} a"
+        said = f"{far}, mass {mass:.4g}, volume fraction {share:.3g}"
+        rows.append((f"bodies {name}", f"{kind.number:,}".replace(",", " "), said))
         rows += _rough_rows(case, name)
     return rows
 

@@ -139,7 +139,8 @@ def _require_room(case: Case, places: Floats, turns: Floats) -> None:
         d, least = case.box.dimension, least_gap(one, other)
         balls = least and one.solid(d).ball and other.solid(d).ball
         near = f", or is nearer than {least:.2g} cells to it" if balls else ""
-        raise CaseError(f"{named(last, j)} overlaps body {i}{of}{near}")
+        fewer = "; expected fewer or smaller bodies" if other.start.rule == LATTICE else ""
+        raise CaseError(f"{named(last, j)} overlaps body {i}{of}{near}{fewer}")
     deep = deepest_in_wall(case, places, turns) if case.walls else None
     if deep is not None:
         raise CaseError(f"{named(*key(deep[0]))} is in a wall, about {deep[1]:.2g} deep")
