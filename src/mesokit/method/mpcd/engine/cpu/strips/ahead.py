@@ -29,7 +29,7 @@ class Next(NamedTuple):
 
 @scalar
 def strip_after(fluid, physics, s, last):
-    """The strip after s; that itself if it is the last but one before `last`."""
+    """The strip after s; s itself where it is the one before `last`."""
     particles, n = fluid.particles, min(s + 1, last - 1)
     start, length = strip_at(n, particles.rows).start, record_length(len(physics.coefficients))
     return Next(
