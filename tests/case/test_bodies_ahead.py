@@ -26,7 +26,13 @@ from mesokit.case.describe.explain import explain
 from mesokit.method.mpcd.body.capsule import CapsuleBody
 from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.ellipse import EllipseBody
-from mesokit.method.mpcd.body.protocol import BodyTrap, CounterForce, GapPotential, Squirming
+from mesokit.method.mpcd.body.protocol import (
+    BodyStart,
+    BodyTrap,
+    CounterForce,
+    GapPotential,
+    Squirming,
+)
 from mesokit.method.mpcd.body.sphere import SphereBody
 from mesokit.method.mpcd.body.spheroid import SpheroidBody
 from mesokit.method.mpcd.body.union import UnionBody
@@ -160,6 +166,13 @@ WARNED = {
         "counter_force = true",
     ),
 }  # fmt: skip
+
+
+def test_a_torque_along_the_axes_of_a_body_may_turn_it_about_its_hinge():
+    """Its frame and that of the hinge differ as soon as the body starts with an orientation."""
+    turned = BodyStart(rule="given", positions=[[9, 9, 9]], orientations=[[0.707, 0, 0.707, 0]])
+    more = {"hinge": [0, 0, 2], "torque": [3, 0, 0], "frame": "body", "start": turned}
+    assert warnings_of([20, 20, 20], SphereBody(radius=3, **more), **HELD) == []
 
 
 @pytest.mark.parametrize("name", WARNED)

@@ -248,7 +248,7 @@ def _idle(case: Case, kind: Any) -> Iterator[str]:
         yield f"force = {show(kind.force)}: it acts along fixed axes alone, and moves nothing"
     if np.any(kind.torque or 0.0) and not by_torque:
         yield f"torque = {show(kind.torque)}: the orientation is fixed, so that it turns nothing"
-    elif kind.hinge is not None and np.any(kind.torque or 0.0):
+    elif kind.hinge is not None and kind.frame == "box" and np.any(kind.torque or 0.0):
         along = abs(np.dot(kind.torque, kind.hinge))
         if along <= 1e-9 * math.hypot(*kind.torque) * math.hypot(*kind.hinge):
             yield (
