@@ -21,7 +21,7 @@ from mesokit.method.mpcd.engine.cpu.numbers import Numbers, fastest_surface
 from mesokit.method.mpcd.groups import fluid_mass_density
 from mesokit.scalar.pointer import address
 
-LISTED = 6.0  # thermal velocities: lists hold flights so fast; faster ones are tried by all bodies
+LISTED = 6.0  # thermal velocities: lists hold so fast flights; of faster ones all bodies are tried
 STRIDES = 0.05  # cells: surfaces rarely go farther in a timestep
 FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
 NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a run
@@ -205,8 +205,10 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
 
 
 def reach_of_lists(case: Case, flight: float) -> float:
-    """How near a surface is to a cell that has its body on the list: as far as a flight goes, and
-    with solutes as far as the potential of gaps."""
+    """How near a surface is to a cell that has its body on the list, in cells.
+
+    It is as far as a flight goes in a timestep, and with solutes as far as the potential of gaps.
+    """
     far = flight
     if case.solutes is not None:
         gaps = (kind.interaction.range for kind in case.bodies if kind.interaction.depth)

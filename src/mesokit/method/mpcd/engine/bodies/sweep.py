@@ -61,11 +61,7 @@ from mesokit.method.mpcd.engine.cpu.physics import field_of, of_bodies
 from mesokit.method.mpcd.engine.cpu.strips.ahead import strip_after
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.one import put_one
-from mesokit.method.mpcd.engine.cpu.strips.rows import (
-    load_particle,
-    load_scratch,
-    store_scratch,
-)
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, load_scratch, store_scratch
 from mesokit.method.mpcd.engine.cpu.sweep import add_strip_flux
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
 from mesokit.method.mpcd.engine.domains.messages.migrate import note_migrants

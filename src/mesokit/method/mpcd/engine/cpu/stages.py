@@ -31,7 +31,7 @@ from mesokit.scalar.vector import added_scaled, chosen
 
 @scalar
 def gather_strip(cell, coefficients, gathered, pattern, following):
-    """Bring the coefficients of each particle's cell into rows; ask for the next strip's places."""
+    """Bring the coefficients of each particle's cell into rows; prefetch the next places."""
     for i in range(0, LANES, OF_LINE):
         for k in range(0, OF_LINE, QUAD):
             gather(coefficients, cell, i + k, gathered, pattern)
@@ -211,7 +211,7 @@ def bin_strip(physics, now, strip, cell, ident, terms_rows):
 def add_strip(cell, terms_rows, sums, count, terms, tallied, following):
     """Add the terms of each particle to the sums of its cell, and count it (see `scatter_add`).
 
-    Meanwhile it asks for velocities of the next strip.
+    Velocities of the next strip are prefetched meanwhile.
     """
     width = sums_length(len(terms))
     together = count - count % OF_LINE

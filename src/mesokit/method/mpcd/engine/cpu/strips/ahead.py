@@ -1,7 +1,8 @@
-"""The next strip, fetched while the loops that wait most pass over this one.
+"""The next strip, prefetched in the two loops that move most memory.
 
-A sweep reads all particles once and works on each for a few nanoseconds. So it waits for memory,
-unless lines are on their way early, a few at a time.
+A sweep reads all particles once and works on each for a few nanoseconds, so it waits for memory.
+Cache lines of the next strip are therefore fetched a few at a time, between gathers and sums of
+this one. That changes times and nothing else.
 """
 
 from typing import Any, NamedTuple
@@ -13,10 +14,13 @@ from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.prefetch import LINE, prefetch
 
 
-class Next(NamedTuple):
-    """A strip that comes next: all data, and where those of the strip begin; the pattern of a
-    vector; all cells, and where those of the strip begin; coefficients of cells, and how many one
-    has."""
+class NextStrip(NamedTuple):
+    """A strip that comes next.
+
+    data (flat), start: all particles, and where the first row of the strip begins. pattern: of a
+    vector. cell (places,), first: cells of all particles, and where those of the strip begin.
+    coefficients (flat), length: records of all cells, and how long one is.
+    """
 
     data: Any
     start: int
@@ -32,7 +36,7 @@ def strip_after(fluid, physics, s, last):
     """The strip after s; s itself where it is the one before `last`."""
     particles, n = fluid.particles, min(s + 1, last - 1)
     start, length = strip_at(n, particles.rows).start, record_length(len(physics.coefficients))
-    return Next(
+    return NextStrip(
         particles.data,
         start,
         physics.zero,
@@ -45,7 +49,7 @@ def strip_after(fluid, physics, s, last):
 
 @by_type
 def fetch_places(following, i):
-    """Ask for the lines with the place of lane i; `following` is () for nothing."""
+    """Prefetch the lines with the place of lane i; `following` is () for nothing."""
     if len(following) == 0:
         return lambda following, i: None
     return lambda following, i: _fetch_rows(following, 0, i)
@@ -53,7 +57,7 @@ def fetch_places(following, i):
 
 @by_type
 def fetch_velocities(following, i):
-    """Ask for the lines with the velocity of lane i, and the coefficients of its cell."""
+    """Prefetch the lines with the velocity of lane i and the coefficients of its cell."""
     if len(following) == 0:
         return lambda following, i: None
 
