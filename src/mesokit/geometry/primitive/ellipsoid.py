@@ -92,6 +92,12 @@ def nearer(p, samples, r, reach):
 
 @scalar
 def normal(p, samples, r):
+    _, out = facing(p, samples, r)
+    return out
+
+
+@scalar
+def facing(p, samples, r):
     away, axis = offset(p, r), vector(p, 3, r)
     height, out = dot(away, axis), across_axis(away, axis)
     radius = length(out)
@@ -101,8 +107,8 @@ def normal(p, samples, r):
             most = k if abs(axis[k]) < abs(axis[most]) else most
         out = with_item(scaled(0.0, r), most, 1.0)
     out = across_axis(out, axis)  # again: what is left of a place near the axis is rounded
-    _, n, m = from_surface(p, height, radius)
-    return added_scaled(scaled(math.copysign(n, height), axis), m / length(out), out)
+    c, n, m = from_surface(p, height, radius)
+    return c, added_scaled(scaled(math.copysign(n, height), axis), m / length(out), out)
 
 
 def extent(p: Sequence[float]) -> float:

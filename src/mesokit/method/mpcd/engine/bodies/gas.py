@@ -190,8 +190,8 @@ def is_cut(bodies, i, s):
         return within < 0.0 or dot(s, s) >= within * within
     q = load(bodies.rows, i, TURN, FOUR)
     kind = bodies.kind[i]
-    deep = is_nearer(bodies, kind, q, s, -HALF_DIAGONAL)
-    return not deep and is_nearer(bodies, kind, q, s, HALF_DIAGONAL)
+    near = is_nearer(bodies, kind, q, s, HALF_DIAGONAL)
+    return near and not is_nearer(bodies, kind, q, s, -HALF_DIAGONAL)
 
 
 class GasCell(NamedTuple):

@@ -9,16 +9,20 @@ import math
 import numpy as np
 
 from mesokit.case.box import at_time, fold
+from mesokit.geometry import primitive
+from mesokit.geometry.primitive import WIDTH
 from mesokit.loops.layout import share
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.bodies import state
 from mesokit.method.mpcd.engine.bodies.state import (
     EVERY_BODY,
+    FIRST_PART,
     MEAN_SPIN,
     MEAN_VELOCITY,
     MOST_NEAR_CELL,
     MOST_PARTNERS,
     NO_BODY,
+    PARTS_END,
     PATH,
     PLACE,
     RADIUS,
@@ -29,6 +33,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     TURN,
     distance_of,
     image_near,
+    is_nearer,
     load,
     of_kind,
 )
@@ -187,17 +192,18 @@ def list_around(bodies, box, i, mine, zero):
                     cell = np.int64(cell_index(here, bodies.grid))
                     if mine[0] <= cell < mine[1]:
                         away = added_scaled(middle, -1.0, x)
-                        if distance_of_all(bodies, kind, q, away) <= reach:
+                        if is_listed(bodies, kind, q, away, reach):
                             put_on_list(bodies, cell, i)
                             clear_cubes(bodies, box, kind, q, cell, away)
 
 
-@where("distance_of(bodies, kind, q, s)", bodies=kicks_fluid)
-def distance_of_all(bodies, kind, q, s):
-    """The same with the ball and the shell in which the fluid takes counter-forces."""
-    c = distance_of(bodies, kind, q, s) - bodies.kinds[kind, state.SHELL]
+@where("is_nearer(bodies, kind, q, s, reach)", bodies=kicks_fluid)
+def is_listed(bodies, kind, q, s, reach):
+    """Whether a place at an arm is nearer than a reach to the surface of a body, or to the ball or
+    the shell in which the fluid takes its counter-forces."""
     radius = bodies.kinds[kind, state.BALL_RADIUS]
-    return min(c, distance_to_ball(bodies, kind, q, s) - radius) if radius > 0.0 else c
+    near_ball = radius > 0.0 and distance_to_ball(bodies, kind, q, s) - radius < reach
+    return near_ball or is_nearer(bodies, kind, q, s, reach + bodies.kinds[kind, state.SHELL])
 
 
 @seldom
@@ -236,18 +242,40 @@ def takes_counter(bodies, box, cell, r):
 @seldom
 def clear_cubes(bodies, box, kind, q, cell, s):
     """Lower what is clear around the halves of a cell whose middle is at an arm."""
-    d = len(s)
+    y = state.rotated_back(q, s)
+    for part in range(int(bodies.kinds[kind, FIRST_PART]), int(bodies.kinds[kind, PARTS_END])):
+        p = bodies.parts + 8 * WIDTH * part
+        c, normal = primitive.facing(bodies.part_code[part], p, bodies.parts, y)
+        c -= bodies.kinds[kind, state.SHELL]
+        clear_halves(bodies, box, cell, c, state.rotated(q, normal))
+    clear_around_ball(bodies, box, kind, q, cell, s)
+
+
+@where(bodies=kicks_fluid)
+def clear_around_ball(bodies, box, kind, q, cell, s):
+    """The same for the ball in which the fluid takes a counter-force."""
+    radius = bodies.kinds[kind, state.BALL_RADIUS]
+    if radius > 0.0:
+        away = added_scaled(s, -1.0, state.rotated(q, load(bodies.kinds, kind, state.BALL_AT, s)))
+        far = math.sqrt(dot(away, away))
+        clear_halves(bodies, box, cell, far - radius, scaled(1.0 / max(far, 1e-9), away))
+
+
+@scalar
+def clear_halves(bodies, box, cell, distance, normal):
+    """The same for a convex solid, by its distance from the middle of the cell, and its normal.
+
+    A half lies no nearer to the solid than to the plane that touches it.
+    """
+    d = len(normal)
     for cube in range(1 << d):
-        at = s
+        rise = 0.0
         for k in range(d):
-            at = with_item(at, k, s[k] + (0.25 if (cube >> k) & 1 else -0.25))
-        c = (
-            distance_of_all(bodies, kind, q, at)
-            - 0.5 * HALF_DIAGONAL
-            - (0.5 if slides(box) else 0.0)
-        )
+            rise += normal[k] * (0.25 if (cube >> k) & 1 else -0.25)
+        c = distance + rise - 0.5 * HALF_DIAGONAL - (0.5 if slides(box) else 0.0)
         place = half_of(bodies, cell, cube, d)
-        bodies.clear[place] = min(bodies.clear[place], parts_clear(bodies, c))
+        clear = parts_clear(bodies, c) if distance > 0.0 else np.uint8(0)
+        bodies.clear[place] = min(bodies.clear[place], clear)
 
 
 @scalar

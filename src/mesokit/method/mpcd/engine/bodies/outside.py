@@ -16,6 +16,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
     TURN,
     distance_of,
     image_near,
+    is_nearer,
     load,
     of_kind,
 )
@@ -70,9 +71,9 @@ def deepest(box, bodies, cell, r):
         s = added_scaled(r, -1.0, x)
         radius = of_kind(bodies, i, RADIUS)
         if dot(s, s) < radius * radius:
-            c = distance_of(bodies, bodies.kind[i], load(bodies.rows, i, TURN, FOUR), s)
-            if c < least:
-                least, out = c, normal_at(bodies, i, s, 0.0)
+            q, kind = load(bodies.rows, i, TURN, FOUR), bodies.kind[i]
+            if is_nearer(bodies, kind, q, s, least):
+                least, out = distance_of(bodies, kind, q, s), normal_at(bodies, i, s, 0.0)
     return least, out
 
 

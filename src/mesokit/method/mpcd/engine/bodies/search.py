@@ -40,8 +40,10 @@ from mesokit.method.mpcd.engine.bodies.state import (
     load,
     of_kind,
     place_at,
+    rate_of,
     rotated,
     rotated_back,
+    turned_on,
     with_shear,
 )
 from mesokit.method.mpcd.engine.cpu.bounce import fly_among, take_sum
@@ -51,6 +53,7 @@ from mesokit.method.mpcd.streaming import fall
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added, added_scaled, dot, outer, scaled
 
+ROUNDED = 1e-9  # cells: more than heights are rounded by
 BLOCK = 64  # numbers of hits that particles of walls take in a round
 
 
@@ -185,13 +188,13 @@ def time_to_ball(radius, y, w, a, time):
 
 
 @scalar
-def clearance_of_flight(bodies, i, y, w, a, begin, t):
-    """Distance from body i of a place on a flight, as the body has rotated by then."""
+def clearance_of_flight(bodies, i, flight, rate, begin, t):
+    """Distance from body i, which turns at a rate, of a place on a flight (y, w, a)."""
+    y, w, a = flight
     x = added_scaled(added_scaled(y, t, w), 0.5 * t * t, a)
     spin = load(bodies.rows, i, MEAN_SPIN, THREE)
-    q = after_turn(load(bodies.rows, i, TURN, FOUR), spin, begin + t)
-    c, _ = state.clearance(bodies, bodies.kind[i], rotated_back(q, x))
-    return c
+    q = turned_on(load(bodies.rows, i, TURN, FOUR), spin, rate, begin + t)
+    return state.clearance(bodies, bodies.kind[i], rotated_back(q, x))
 
 
 @seldom
@@ -199,21 +202,27 @@ def time_to_shape(bodies, i, y, w, a, begin, time):
     """The same for any shape, which turns while it moves."""
     late, t = 2.0 * time + 1.0, 0.0
     spin, pull = load(bodies.rows, i, MEAN_SPIN, THREE), math.sqrt(dot(a, a))
-    fast = math.sqrt(dot(w, w)) + pull * time
+    flight, rate = (y, w, a), rate_of(spin)
+    fast, radius = math.sqrt(dot(w, w)) + pull * time, of_kind(bodies, i, RADIUS)
     path = fast * time
-    c = clearance_of_flight(bodies, i, y, w, a, begin, 0.0)
-    fast += math.sqrt(dot(spin, spin)) * (of_kind(bodies, i, RADIUS) + max(c, 0.0) + path)
-    if c > fast * time:
+    q = turned_on(load(bodies.rows, i, TURN, FOUR), spin, rate, begin)
+    straight = rotated_back(q, scaled(time, w))
+    c, lowest = state.heights_on_flight(bodies, bodies.kind[i], rotated_back(q, y), straight)
+    # Most flights stay above planes that touch the body, by more than a force bends them and than
+    # the body turns.
+    if lowest > time * (rate[0] * radius + 0.5 * pull * time) + ROUNDED:
         return late
+    fast += math.sqrt(dot(spin, spin)) * (radius + max(c, 0.0) + path)
     # No surface comes nearer faster than `fast`, so steps of the distance over it are safe. Near
     # the surface they are short; the first place inside brackets the hit.
     while t < time:
         step = min(t + max(c, SHORT_STEP) / (fast + 1e-300), time)
-        above, c = c, clearance_of_flight(bodies, i, y, w, a, begin, step)
+        above, c = c, clearance_of_flight(bodies, i, flight, rate, begin, step)
         if c < 0.0:
             if above <= ON_SURFACE and t == 0.0:  # it starts on the surface
                 return 0.0 if descends(bodies, i, y, w, spin, begin) else late
-            return time_of_crossing(bodies, i, (y, w, a), begin, (t, step), (max(above, 0.0), c))
+            crossing = (t, step), (max(above, 0.0), c)
+            return time_of_crossing(bodies, i, flight, rate, begin, crossing[0], crossing[1])
         t = step
     return late
 
@@ -226,10 +235,10 @@ def descends(bodies, i, y, w, spin, begin):
 
 
 @seldom
-def time_of_crossing(bodies, i, flight, begin, times, distances):
+def time_of_crossing(bodies, i, flight, rate, begin, times, distances):
     """The last time found outside, when a flight crosses a surface between two times, at which its
     distances from it are positive and negative."""
-    (y, w, a), (outside, inside), (above, below) = flight, times, distances
+    (outside, inside), (above, below) = times, distances
     # False position with half weights for the end that stays (Illinois), a bisection now and then.
     for n in range(MOST_TRIES):
         part = above / (above - below) if n % 8 < 7 else 0.5
@@ -238,7 +247,7 @@ def time_of_crossing(bodies, i, flight, begin, times, distances):
             middle = 0.5 * (outside + inside)
             if not outside < middle < inside:
                 break
-        c = clearance_of_flight(bodies, i, y, w, a, begin, middle)
+        c = clearance_of_flight(bodies, i, flight, rate, begin, middle)
         if c < 0.0:
             inside, below, above = middle, c, 0.5 * above
         else:
@@ -255,5 +264,5 @@ def normal_at(bodies, i, s, time):
         return scaled(1.0 / math.sqrt(dot(s, s)), s)
     q = after_turn(load(bodies.rows, i, TURN, FOUR), load(bodies.rows, i, MEAN_SPIN, THREE), time)
     y = rotated_back(q, s)
-    _, part = state.clearance(bodies, bodies.kind[i], y)
-    return rotated(q, state.normal_of(bodies, part, y))
+    _, normal = state.facing(bodies, bodies.kind[i], y)
+    return rotated(q, normal)

@@ -211,13 +211,25 @@ def _turned(w, u, a):
     )
 
 
-@seldom
+@scalar
 def after_turn(q, spin, time):
     """The orientation after a uniform turn; a unit quaternion again."""
+    return turned_on(q, spin, rate_of(spin), time)
+
+
+@scalar
+def rate_of(spin):
+    """The size of an angular velocity, and one over it (0 for 0)."""
     fast = np.sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2])
-    half = fast * time * (0.25 / np.pi)  # turns of half the angle
+    return fast, 1.0 / fast if fast > 0.0 else 0.0
+
+
+@seldom
+def turned_on(q, spin, rate, time):
+    """The same for an angular velocity whose rate is given."""
+    half = rate[0] * time * (0.25 / np.pi)  # turns of half the angle
     s, c = sincos_turn(half - floor(half))
-    s *= 1.0 / fast if fast > 0.0 else 0.0
+    s *= rate[1]
     x, y, z = s * spin[0], s * spin[1], s * spin[2]
     w = (
         c * q[0] - x * q[1] - y * q[2] - z * q[3],
@@ -284,15 +296,13 @@ def spin_of(bodies, i, q, angular_momentum):
 
 @seldom
 def clearance(bodies, kind, y):
-    """Distance of a place in the body's frame from its surface, and the part that is nearest."""
+    """Distance of a place in the body's frame from its surface."""
     first, end = int(bodies.kinds[kind, FIRST_PART]), int(bodies.kinds[kind, PARTS_END])
-    least, which = np.inf, first
+    least = np.inf
     for part in range(first, end):
         p = bodies.parts + 8 * WIDTH * part
-        c = primitive.distance(bodies.part_code[part], p, bodies.parts, y)
-        if c < least:
-            least, which = c, part
-    return least, which
+        least = min(least, primitive.distance(bodies.part_code[part], p, bodies.parts, y))
+    return least
 
 
 @seldom
@@ -300,8 +310,7 @@ def distance_of(bodies, kind, q, s):
     """Distance of a place at an arm s from the surface of a body of a kind, negative inside."""
     if bodies.kinds[kind, IS_BALL] > 0.5:
         return math.sqrt(dot(s, s)) - bodies.kinds[kind, RADIUS]
-    c, _ = clearance(bodies, kind, rotated_back(q, s))
-    return c
+    return clearance(bodies, kind, rotated_back(q, s))
 
 
 @seldom
@@ -318,10 +327,33 @@ def is_nearer(bodies, kind, q, s, reach):
 
 
 @seldom
-def normal_of(bodies, part, y):
-    """Unit normal out of a part at a place in the body's frame."""
-    p = bodies.parts + 8 * WIDTH * part
-    return primitive.normal(bodies.part_code[part], p, bodies.parts, y)
+def facing(bodies, kind, y):
+    """Distance of a place in the body's frame from its surface, and the normal of the part that is
+    nearest."""
+    first, end = int(bodies.kinds[kind, FIRST_PART]), int(bodies.kinds[kind, PARTS_END])
+    least, out = np.inf, y
+    for part in range(first, end):
+        p = bodies.parts + 8 * WIDTH * part
+        c, normal = primitive.facing(bodies.part_code[part], p, bodies.parts, y)
+        if c < least:
+            least, out = c, normal
+    return least, out
+
+
+@seldom
+def heights_on_flight(bodies, kind, y, flight):
+    """Distance of a place in the body's frame from its surface, and the least height above it to
+    which a straight flight may lead.
+
+    Parts are convex: each lies behind the plane that touches it where it is nearest to the place.
+    """
+    first, end = int(bodies.kinds[kind, FIRST_PART]), int(bodies.kinds[kind, PARTS_END])
+    least, lowest = np.inf, np.inf
+    for part in range(first, end):
+        p = bodies.parts + 8 * WIDTH * part
+        c, normal = primitive.facing(bodies.part_code[part], p, bodies.parts, y)
+        least, lowest = min(least, c), min(lowest, c + min(dot(normal, flight), 0.0))
+    return least, lowest
 
 
 @scalar

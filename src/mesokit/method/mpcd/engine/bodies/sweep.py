@@ -286,8 +286,17 @@ def may_hit(bodies, physics, box, cell, r, v, path):
         else:
             q = load(bodies.rows, i, TURN, state.FOUR)
             if state.is_nearer(bodies, kind, q, away, path + stride):
-                return True
+                y, flown = state.rotated_back(q, away), state.rotated_back(q, scaled(time, v))
+                _, lowest = state.heights_on_flight(bodies, kind, y, flown)
+                if lowest <= stride or not is_straight(path, v, time):
+                    return True
     return False
+
+
+@scalar
+def is_straight(path, v, time):
+    """Whether no force and no wall can bend a flight whose longest path is given."""
+    return path * path <= time * time * dot(v, v) * (1.0 + 1e-12)
 
 
 @scalar
@@ -297,8 +306,7 @@ def flight_by_ball(radius, u, v, speed, path, time):
 
     A flight that is bent may go anywhere on its path: it starts in a larger ball, or meets none.
     """
-    straight = path * path <= time * time * dot(v, v) * (1.0 + 1e-12)
-    part = 1.0 if straight else 0.0
+    part = 1.0 if is_straight(path, v, time) else 0.0
     w = added_scaled(v, -1.0, state.with_shear(u, speed))
     return radius + (1.0 - part) * path, scaled(part, w)
 
