@@ -25,6 +25,7 @@ from mesokit import (
     Spheroid,
     Union,
 )
+from mesokit.geometry.primitive import CONVEX, KINDS, MOVABLE
 from tests.helpers.shapes import (
     EVERY,
     FIRST,
@@ -301,3 +302,10 @@ def test_points_have_one_number_for_each_axis(points):
             ask(points)
     assert solids.distance([5.0, 8.0]).tolist() == [1.0]
     assert solids.distance(np.zeros((3, 4, 2))).shape == (12,)
+
+
+def test_bodies_that_move_consist_of_convex_parts():
+    """Flights that tangent planes rule out are not followed (`bodies.state.heights_on_flight`)."""
+    movable = {name for name, number in KINDS.items() if MOVABLE[number]}
+    assert movable == {"ball", "capsule", "brick", "ellipsoid"}
+    assert all(CONVEX[KINDS[name]] for name in movable)

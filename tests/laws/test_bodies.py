@@ -30,6 +30,18 @@ def test_hits_keep_momentum_and_energy(name, d, surface):
     assert abs(fluid.bodies.velocities - first).max() > 1e-3
 
 
+@pytest.mark.parametrize(("name", "d"), SHAPES)
+def test_no_flight_into_a_body_is_missed(name, d):
+    """What is seen without following a flight leaves no particle in a body, to be put outside."""
+    fluid = make_fluid(SIZES[d], bodies=[body(name, d, virtual="none")], **FAST)
+    put_outside = 0
+    for _ in range(100):
+        fluid.advance(1)
+        put_outside += fluid.bodies.counts()["put back"]
+    assert put_outside == 0
+    assert abs(fluid.bodies.velocities).max() > 1e-3
+
+
 @pytest.mark.parametrize("d", [2, 3])
 def test_virtual_particles_keep_momentum(d):
     fluid = make_fluid(ROOM[d], bodies=SOME[d], **FAST)

@@ -5,8 +5,8 @@ the solid, or something of its sign that is no larger; `normal(p, samples, r)`; 
 solid is CONVEX. One whose distance takes long also has `nearer(p, samples, r, reach)`, whether that
 is below a reach, and `facing(p, samples, r)`, both distance and normal. p is a row of WIDTH
 numbers, of which the first three are a place, so that all can be moved alike. A primitive of which
-bodies that move can be made also has its `extent`, its `width` and its `integrals`. The kind of
-each part is a number at run time: one compiled step serves every case.
+bodies that move can be made is convex, and also has its `extent`, its `width` and its `integrals`.
+The kind of each part is a number at run time: one compiled step serves every case.
 """
 
 from types import ModuleType
@@ -58,16 +58,16 @@ def _nearer() -> Any:
 
 
 def _facing() -> Any:
-    """The distance from the primitive whose number comes first, and the normal."""
+    """The distance from the primitive whose number comes first, and its normal."""
     lines, space = ["def facing(kind, p, samples, r):"], {}
     for number, module in enumerate(PRIMITIVES):
-        both = f"c{number}(p, samples, r), n{number}(p, samples, r)"
+        both = f"distance{number}(p, samples, r), normal{number}(p, samples, r)"
         if hasattr(module, "facing"):
-            both = f"f{number}(p, samples, r)"
-            space[f"f{number}"] = module.facing
-        lines.append(f"    if kind == {number}: return {both}")
-        space[f"c{number}"], space[f"n{number}"] = module.distance, module.normal
-    exec("\n".join([*lines[:-1], lines[-1].replace(f"if kind == {number}: ", "")]), space)
+            both, space[f"facing{number}"] = f"facing{number}(p, samples, r)", module.facing
+        when = f"if kind == {number}: " if number < len(PRIMITIVES) - 1 else ""
+        lines.append(f"    {when}return {both}")
+        space |= {f"distance{number}": module.distance, f"normal{number}": module.normal}
+    exec("\n".join(lines), space)
     return seldom(space["facing"])
 
 
