@@ -109,6 +109,9 @@ FILES = {
         "bodies[#1].swim.B1 = 0: a squirmer needs B1, B2 or both other than 0",
     SPACE + BALL + 'surface = "slip"\nswim = { B1 = 1 }\n':
         "bodies[#1].swim: not with surface = 'slip', which drags no fluid along",
+    SPACE + BALL + 'surface = "slip"\nvirtual = "fill"\n':
+        "bodies[#1].virtual = 'fill': not with surface = 'slip', which has no virtual particles; "
+        "expected 'none'",
     SPACE + '[[bodies]]\nshape = "cuboid"\nsize = [4, 4, 4]\nswim = { B1 = 1 }\n':
         "bodies[#1].swim: only of a sphere, disk, spheroid or ellipse",
     SPACE + '[[bodies]]\nshape = "capsule"\nlength = 4\nradius = 2\n':

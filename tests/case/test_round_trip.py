@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import pickle
 import typing
 from pathlib import Path
 
@@ -29,6 +30,7 @@ from mesokit import (
     Run,
     Sinusoidal,
     Species,
+    SphereBody,
     SRDPlusA,
     Start,
     Surface,
@@ -119,6 +121,21 @@ def test_written_and_read_a_case_is_the_same(tmp_path_factory: typing.Any, case:
     assert again == case
     assert again.to_toml() == case.to_toml()
     derive(case, 2)  # whatever is valid has derived numbers
+
+
+@pytest.mark.parametrize(("keys", "virtual"), [
+    ({}, "fill"), ({"virtual": "none"}, "none"), ({"surface": "slip"}, "none"),
+    ({"surface": "slip", "virtual": "none"}, "none"),
+])  # fmt: skip
+def test_bodies_keep_what_fills_them(tmp_path: Path, keys: dict[str, str], virtual: str) -> None:
+    """A slip surface has no virtual particles, whether it says so or not."""
+    body = SphereBody(radius=3, **keys)
+    assert body.virtual == virtual and dataclasses.replace(body) == body
+    case = Case(run=Run(1), box=Box([16, 16, 16]), fluid=Fluid(), bodies=[body])
+    (tmp_path / "case.toml").write_text(case.to_toml())
+    again = Case.from_toml(tmp_path / "case.toml")
+    assert again == case == pickle.loads(pickle.dumps(case))
+    assert again.bodies[0].virtual == virtual
 
 
 @pytest.mark.parametrize("name", templates())

@@ -194,8 +194,8 @@ def _body_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 f"around it is not resolved: give all lengths {THIN_BODY / solid.thinnest:.2g} "
                 "times as many cells"
             )
-        own, filled = mass / solid.volume, kind.virtual == "fill" and kind.surface != "slip"
-        if filled and _above(density, own, 4):
+        own = mass / solid.volume
+        if kind.virtual == "fill" and _above(density, own, 4):
             yield (
                 f"{key}: its density {own:.4g} is below that of the fluid, {density:.4g}: its "
                 "virtual particles are thinned in proportion"

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import field_validator
+from pydantic import field_validator, model_validator
+from pydantic_core import ArgsKwargs
 
 from mesokit.case.component import component, name_of, option, param, show
 from mesokit.case.describe.hints import Either, Many
@@ -251,7 +252,7 @@ class Body(ABC):
     virtual: Literal["fill", "none"] = option(
         default="fill",
         doc="virtual particles in the cells that the surface cuts: 'fill' the inside with a gas at "
-        "the body's velocity, or 'none' (a slip surface has none)",
+        "the body's velocity, or 'none', as always with a slip surface",
         kw_only=True,
     )
     force: Many[float] | None = option(
@@ -296,6 +297,21 @@ class Body(ABC):
     start: BodyStart = option(
         default=BodyStart(), doc="first places, orientations, velocities", kw_only=True
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _empty_beside_slip(cls, given: Any) -> Any:
+        """A slip surface has no virtual particles, which it may say as well."""
+        values = given.kwargs if isinstance(given, ArgsKwargs) else given
+        if not isinstance(values, dict) or values.get("surface") != "slip":
+            return given
+        if values.get("virtual") == "fill":
+            raise ValueError(
+                "virtual = 'fill': not with surface = 'slip', which has no virtual particles; "
+                "expected 'none'"
+            )
+        values = {"virtual": "none", **values}
+        return ArgsKwargs(given.args, values) if isinstance(given, ArgsKwargs) else values
 
     @field_validator("name")
     @classmethod
