@@ -348,6 +348,42 @@ def test_mobilities_are_velocities_over_forces():
     ]  # fmt: skip
 
 
+def test_what_is_fixed_has_no_mobility():
+    keys = {"radius": 1.5, "number": 4, "force": (3.0, 2.0), "torque": 4.0}
+    kind = DiskBody(**keys, fixed=["x", "orientation"])
+    result = seen(
+        BodyDrift(), moving_disks(bodies=(kind,), observe=[BodyDrift()]),
+        velocity=((0, 1), (0, 2), (0, 1), (0, 2)), rate=(0, 0, 0, 0),
+    )  # fmt: skip
+    names = [c.what for c in result.comparisons]
+    assert [name for name in names if "mobility" in name] == ["mobility along y"]
+    assert result["mobility along y"].measured == pytest.approx(0.75)
+    for name in names:
+        held = name in ("velocity along x", "angular velocity about z")
+        assert (result[name].note == "fixed") == held
+        assert (result[name].expected == 0) == held
+    still = DiskBody(**keys, fixed=["x", "y"], counter_force=True)
+    result = seen(BodyDrift(), moving_disks(bodies=(still,), observe=[BodyDrift()]))
+    assert result["velocity along its own axis"].note == "fixed"
+
+
+def test_across_a_hinge_there_is_no_rotational_mobility():
+    sphere = SphereBody(radius=2, torque=(1.0, 0.0, 2.0), hinge=(0.0, 0.0, 1.0))
+    case = Case(run=Run(1), box=Box([12, 12, 12]), fluid=Fluid(), bodies=[sphere])
+    accumulator = BodyDrift().accumulator(case)
+    for turn in (3, 5):
+        bodies = type("Bodies", (), {
+            "velocities": np.zeros((1, 3)), "headings": np.eye(3)[:1],
+            "spins": np.array([[0.0, 0.0, turn]]),
+        })  # fmt: skip
+        accumulator.observe(type("Fluid", (), {"bodies": bodies}))
+    result = accumulator.result()
+    assert result["rotational mobility about z"].measured == 2
+    assert "rotational mobility about x" not in result
+    notes = [result[f"angular velocity about {axis}"].note for axis in "xyz"]
+    assert notes == ["fixed", "fixed", ""]
+
+
 def run_of(**more):
     simulation = Simulation(moving_disks(**more), threads=1)
     simulation.run()

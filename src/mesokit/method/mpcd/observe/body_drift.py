@@ -21,7 +21,7 @@ class BodyDrift(Observable):
 
     Also the mean of the velocity along each body's own axis x, by which swimmers swim. Over a
     constant force along an axis of the box the velocity is the mobility, and over a torque the
-    angular velocity is that of rotation.
+    angular velocity is that of rotation. What is fixed has neither.
     """
 
     quantity: Literal["body-drift"] = tag("body-drift")
@@ -66,11 +66,22 @@ class BodyDriftAccumulator(BlockAccumulator):
     def _unit(self, k: int) -> str:
         return "a/tau" if k <= self.dimension else "1/tau"
 
+    def _fixed(self, k: int) -> bool:
+        """Whether the case keeps a component at 0: by what is fixed, or across a hinge."""
+        kind, d = self.of.kind, self.dimension
+        if k < d:
+            return AXES[k] in kind.fixed
+        if k == d:
+            return not self.of.moving
+        across = kind.hinge is not None and d == 3 and not kind.hinge[self.turning[k - d - 1]]
+        return across or "orientation" in kind.fixed
+
     def comparisons(self, names: list[str]) -> Iterator[Comparison]:
         mean, error = self.blocks.mean().tolist(), self.blocks.error().tolist()
         rest = np.nan if setting.driven(self.case) else 0.0
         for k, name in enumerate(names):
             known, why = (rest, "") if k != self.dimension else self.of.swimming_speed()
+            known, why = (0.0, "fixed") if self._fixed(k) else (known, why)
             known = rest if np.isnan(known) else known
             yield Comparison(name, mean[k], error[k], known, self._unit(k), why)
         kind, d = self.of.kind, self.dimension
@@ -78,12 +89,12 @@ class BodyDriftAccumulator(BlockAccumulator):
             return
         torque = np.atleast_1d(kind.torque if kind.torque is not None else 0.0)
         for k, force in enumerate(kind.force or ()):
-            if force:
+            if force and not self._fixed(k):
                 what, (known, why) = f"mobility along {AXES[k]}", self.of.mobility()
                 found = mean[k] / force, error[k] / abs(force)
                 yield Comparison(what, *found, known, "tau/m", why)
         for k, size in enumerate(torque[: len(self.turning)].tolist()):
-            if size:
+            if size and not self._fixed(d + 1 + k):
                 what = f"rotational mobility about {AXES[self.turning[k]]}"
                 known, why = self.of.rotational_mobility()
                 found = mean[d + 1 + k] / size, error[d + 1 + k] / abs(size)
