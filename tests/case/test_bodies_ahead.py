@@ -150,6 +150,18 @@ WARNED = {
         "bodies[#1]: expected U d/nu = 0.1, of its speed and the distance of its counter-force; "
         "above 0.05 inertia takes or gives more than a tenth of the speed; a smaller force",
     ),
+    "beside the line": (
+        [40, 40],
+        [DiskBody(radius=2, force=[0.25, 0], frame="body", counter=CounterForce(at=[-3, 4]))], {},
+        "bodies[#1].counter.at = [-3, 4]: beside the line of force = [0.25, 0], so that the two "
+        "turn the body, with a torque of -1",
+    ),
+    "beside the line in 3D": (
+        [30] * 3,
+        [SphereBody(radius=2, force=[0, 0, 1], frame="body", counter=CounterForce(at=[5, 0, 0]))],
+        {}, "bodies[#1].counter.at = [5, 0, 0]: beside the line of force = [0, 0, 1], so that the "
+        "two turn the body, with a torque of [0, -5, 0]",
+    ),
     "stiff": (
         [20, 20], [DiskBody(radius=3, mass=400, trap=BodyTrap(k=160_000))], {},
         "bodies[#1].trap.k = 160000: it swings by 2 rad in a timestep; above 0.5 its velocity is "
@@ -262,6 +274,7 @@ def test_an_ellipse_swims_by_its_aspect():
 
 
 HOLD = {"trap": BodyTrap(k=1)}
+AHEAD = {"force": [0.1, 0.01], "frame": "body"}
 
 
 @pytest.mark.parametrize(
@@ -271,6 +284,8 @@ HOLD = {"trap": BodyTrap(k=1)}
         DiskBody(radius=3, force=[1, 0], fixed=["y"], counter_force=True),
         UnionBody(parts=[Disk([0, 0], 2), Disk([4, 0], 2)]),
         DiskBody(radius=3, force=[1, 0], **HOLD),
+        DiskBody(radius=2, **AHEAD, counter=CounterForce(at=[-3, -0.3])),
+        DiskBody(radius=2, **AHEAD, fixed=["orientation"], counter=CounterForce(at=[-4, 0])),
         DiskBody(radius=3, density=5, virtual="none"),
         DiskBody(radius=3, density=5, surface="slip"),
         DiskBody(radius=3, number=2, interaction=GapPotential(depth=0, range=0.25)),

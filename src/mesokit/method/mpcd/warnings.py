@@ -182,6 +182,7 @@ def _body_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 "fluid between them"
             )
         yield from (f"{key}.{note}" for note in _idle(case, kind))
+        yield from (f"{key}.{note}" for note in _beside_the_line(kind))
         swing = math.sqrt(kind.trap.k * fluid.kT / mass) * fluid.timestep if kind.trap else 0.0
         if _above(swing, SWING):
             yield (
@@ -255,6 +256,20 @@ def _idle(case: Case, kind: Any) -> Iterator[str]:
                 f"torque = {show(kind.torque)}: it acts across hinge = {show(kind.hinge)}, so that "
                 "it turns nothing"
             )
+
+
+def _beside_the_line(kind: Any) -> Iterator[str]:
+    """A counter-force that turns the body, which takes the opposite of its moment."""
+    if kind.counter is None or kind.counter.at is None or "orientation" in kind.fixed:
+        return
+    at, force = (np.pad(row, (0, 3 - len(row))) for row in (kind.counter.at, kind.force))
+    torque = np.cross(at, force)
+    if np.linalg.norm(torque) > 1e-9 * np.linalg.norm(at) * np.linalg.norm(force):
+        size = torque[2].item() if len(kind.force) == 2 else torque.tolist()
+        yield (
+            f"counter.at = {show(kind.counter.at)}: beside the line of force = {show(kind.force)}, "
+            f"so that the two turn the body, with a torque of {show(size)}"
+        )
 
 
 def _moved(case: Case, kind: Any) -> tuple[bool, bool]:
