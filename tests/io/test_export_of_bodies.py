@@ -13,6 +13,8 @@ import mesokit
 from mesokit import CaseError, MaxwellBoltzmann, Polymer, Run, Solutes, every
 from mesokit.case.trajectory import Trajectory
 from mesokit.geometry import region
+from mesokit.io import gsd_file
+from mesokit.io.moments import Moment, Particles
 from mesokit.method.mpcd.body.drawn import drawn_as
 from mesokit.run.simulation import Simulation
 from tests.helpers.bodies import body
@@ -78,6 +80,7 @@ def test_files_of_others_have_the_shapes_of_bodies(ended, tmp_path):
         assert len(file) == 5 and frame.particles.N == 4
         turned = file.file.read_chunk(4, "log/particles/angular_velocity")
     assert frame.particles.types == ["fluid", "disks", "planks"]
+    assert frame.particles.diameter.tolist() == [3, 3, 3, 2]
     _, disks, planks = frame.particles.type_shapes
     assert disks == {"type": "Sphere", "diameter": 3.0}
     assert planks["type"] == "Polygon"
@@ -153,6 +156,33 @@ def test_shapes_in_three_dimensions():
     away = np.hypot(np.hypot(corners[:, 0] - nearest, corners[:, 1]), corners[:, 2])
     np.testing.assert_allclose(away, 1, atol=1e-9)
     np.testing.assert_allclose(np.ptp(corners, axis=0), [6, 2, 2], atol=1e-9)
+
+
+@pytest.mark.parametrize(("d", "name", "diameter"), [
+    (2, "disk", 4), (2, "ellipse", 6), (2, "rectangle", 2), (2, "union", 2),
+    (3, "sphere", 4), (3, "spheroid", 6), (3, "cuboid", 2), (3, "capsule", 2), (3, "union", 2),
+])  # fmt: skip
+def test_ovito_draws_bodies_to_scale(d, name, diameter, tmp_path):
+    """It takes the radius of a particle for that of a sphere, and times it what is no ellipsoid."""
+    one = body(name, d).solid(d)
+    size = 2 * one.radius
+    particles = Particles(
+        number=np.arange(2), kind=np.array([0, 1]), mass=np.ones(2), names=("beads", name),
+        diameter=np.array([0.5, size]), molecule=np.array([-1, -1]),
+        bonds=np.zeros((0, 2), int), dimension=d, size=np.full(3, 12.0),
+        closed=(False,) * 3, shapes={1: drawn_as(one.parts, d)},
+    )  # fmt: skip
+    now = Moment(0, 0.0, 0.0, np.zeros((2, 3)), None, None)
+    gsd_file.write(tmp_path / "one.gsd", particles, [now])
+    with gsd.hoomd.open(str(tmp_path / "one.gsd")) as file:
+        found = file[0].particles
+    assert found.diameter.tolist() == [0.5, diameter]
+    bead, shape = found.type_shapes
+    assert bead == {"type": "Sphere", "diameter": 0.5}
+    if shape["type"] == "Sphere":
+        assert shape["diameter"] == diameter == pytest.approx(size)
+    elif shape["type"] == "Ellipsoid":
+        assert 2 * max(shape[key] for key in "abc") == diameter == pytest.approx(size)
 
 
 def volume_of(mesh):

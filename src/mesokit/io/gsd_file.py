@@ -17,6 +17,7 @@ from mesokit.io.moments import Moment, Particles
 from mesokit.io.optional import package
 
 SPIN = "log/particles/angular_velocity"
+OWN_SIZE = ("Sphere", "Ellipsoid")  # other shapes OVITO draws times the radius of a particle
 
 
 def require() -> ModuleType:
@@ -99,6 +100,9 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
 
     Spins are there twice: as the angular momenta and moments of inertia of the schema, and as
     `log/particles/angular_velocity`, of which OVITO makes a property of the particles.
+
+    Diameters are those of spheres and the longest axes of ellipsoids; of other shapes they are 2,
+    so that OVITO draws them to scale.
     """
     hoomd = require()
     kinds, size = particles.kind, particles.size
@@ -117,7 +121,7 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
         for k, own in enumerate(of_kinds)
     ]
     frame.particles.typeid, frame.particles.mass = kinds, particles.mass
-    frame.particles.diameter = particles.diameter
+    frame.particles.diameter = _diameters(particles)
     # of uniform spheres, in 2D of disks about z
     share = np.array([0, 0, 1 / 8] if particles.dimension == 2 else [1 / 10] * 3)
     inertia = (particles.mass * particles.diameter**2)[:, None] * share
@@ -144,6 +148,12 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                 if particles.spheres:  # quaternions 2 q (0, L) of those not rotated, q = 1
                     frame.particles.angmom = np.pad(2 * (now.spin * inertia), ((0, 0), (1, 0)))
             file.append(frame)
+
+
+def _diameters(particles: Particles) -> Any:
+    """Diameters (n,), 2 of kinds with a shape that OVITO scales by the radius."""
+    scaled = [k for k, shape in particles.shapes.items() if shape["type"] not in OWN_SIZE]
+    return np.where(np.isin(particles.kind, scaled), 2.0, particles.diameter)
 
 
 def _rounded(position: Any, half: Any) -> Any:
