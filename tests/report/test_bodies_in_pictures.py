@@ -175,6 +175,38 @@ def test_round_bodies_need_no_orientation_and_others_do(tmp_path):
         picture(case, {}, None, "bodies")
 
 
+@pytest.mark.parametrize("kind", ["speed", "bodies"])
+def test_kinds_without_their_orientation_are_left_out_alone(kind, tmp_path):
+    """And the caption says so; of all others both picture and film are as ever."""
+    planks = RectangleBody(size=(5, 3), name="planks")
+    swimmers = DiskBody(radius=1.5, name="swimmers", swim=SWIM)
+    case = make_case(SIZE, observe=[FRAMES], bodies=[planks, DiskBody(radius=2), swimmers])
+    results = results_of(make_case(SIZE, observe=[FRAMES]), 5)
+    places = [[5, 5], [11, 12], [12, 3]]
+    figure = picture(case, results, frames_of(case, places), kind)
+    ((path,),) = [drawn.get_paths() for drawn in filled(figure.axes[0])]
+    np.testing.assert_allclose(path.vertices.mean(axis=0), (11, 12), atol=0.1)
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["disk-1"]
+    (handle,) = legend.legend_handles
+    assert handle.get_color() == body_panel.FILLS[1]
+    said = " ".join(text.get_text() for text in reversed(figure.texts))
+    assert "left out: planks, swimmers, whose orientation was not kept" in said
+    assert "arrows" not in said
+    whole = picture(case, results, frames_of(case, places, turns=[QUARTER] * 3), kind)
+    assert len(filled(whole.axes[0])[0].get_paths()) == 3
+    assert "left out" not in " ".join(text.get_text() for text in reversed(whole.texts))
+    alone = make_case(SIZE, observe=[FRAMES], bodies=[planks])
+    if kind == "speed":
+        figure = picture(alone, results, frames_of(alone, [[5, 5]]), kind)
+        said = " ".join(text.get_text() for text in reversed(figure.texts))
+        assert filled(figure.axes[0]) == []
+        assert "left out: planks, whose orientation was not kept" in said
+    else:
+        frames = frames_of(case, places, places)
+        assert animate(case, results, frames, tmp_path / "a.gif", kind).frames == 2
+
+
 # --- over the flow -------------------------------------------------------------------------------
 
 

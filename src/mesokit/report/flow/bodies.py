@@ -28,7 +28,8 @@ ARROW = 0.6  # of half the length of a body that swims: half its arrow
 
 
 class BodyFrames:
-    """The bodies that a trajectory has, seen along the third axis of the box.
+    """The bodies that a trajectory has, seen along the third axis of the box, without kinds that
+    lack their orientations (see `left_out`).
 
     `plane` is the place along that axis where flow maps cut them, None in 2D; `behind` says that
     pictures in space show only those with a centre behind it. `traces` is the time over which the
@@ -47,12 +48,10 @@ class BodyFrames:
         self.case, self.reader, self.plane, self.behind = case, reader, plane, behind
         self.traces = traces
         self.shapes = method_of(case).bodies(case)
-        before = [group for group in case.groups if "orientation" not in group.has]
-        own = reader.id - sum(group.number for group in before)
-        bodies = next(group for group in case.groups if "orientation" in group.has)
-        self.rows = np.flatnonzero((own >= 0) & (own < bodies.number))
-        self.kinds = reader.species[self.rows] - sum(len(group.kinds) for group in before)
-        self.called = tuple(kind.name for kind in bodies.kinds)
+        self.rows, self.kinds = _rows(case, reader)
+        drawn = _drawn(case, reader)
+        self.rows, self.kinds = self.rows[drawn[self.kinds]], self.kinds[drawn[self.kinds]]
+        self.called, self.shown = _names(case), tuple(np.flatnonzero(drawn).tolist())
         self.columns = [case.box.axes.index(axis) for axis in axes]
         self.third = next((k for k in range(case.box.dimension) if k not in self.columns), None)
 
@@ -86,6 +85,7 @@ class BodyFrames:
             swimmers=np.array(swimmers, np.int64),
             traces=self._traces(index),
             called=self.called,
+            shown=self.shown,
             time=now,
             placed=None if self.third is None else partial(self._placed, places, turns, now),
             room=self._room(),
@@ -111,7 +111,7 @@ class BodyFrames:
 
     def where(self, solid: bool) -> str:
         """Caption: where bodies are cut, or which are shown, and what shows the way they swim."""
-        swimming = any(shape.forward for shape in self.shapes)
+        swimming = any(self.shapes[kind].forward for kind in self.shown)
         if self.third is None or self.plane is None:
             return ARROWS if swimming else ""
         words, sign = [], "<" if towards(self.columns) > 0 else ">"
@@ -241,19 +241,57 @@ def bodies_of(
     behind: bool = False,
     traces: float | None = None,
 ) -> BodyFrames | None:
-    """The bodies of a run, None if it kept none, or of any that is not round no orientation.
+    """The bodies of a run, None if it kept none, or not enough of any to draw it.
 
     Raises CaseError for traces that there are not.
     """
     if traces is not None:
         require_traces(case, traces)
-    if trajectory is None or not len(trajectory) or "position" not in trajectory.fields:
-        return None
-    shapes = method_of(case).bodies(case)
-    if not shapes or ("orientation" not in trajectory.fields and not all(map(_round, shapes))):
+    if trajectory is None or not _has_places(case, trajectory):
         return None
     found = BodyFrames(case, trajectory, axes, plane, behind, traces or 0.0)
     return found if len(found.rows) else None
+
+
+def without_turns(case: Case, trajectory: TrajectoryReader | State | None) -> tuple[str, ...]:
+    """Names of kinds of which a run kept places, but not the orientations that a picture needs."""
+    if trajectory is None or not _has_places(case, trajectory):
+        return ()
+    names, drawn = _names(case), _drawn(case, trajectory)
+    return tuple(names[kind] for kind in np.unique(_rows(case, trajectory)[1]) if not drawn[kind])
+
+
+def left_out(case: Case, trajectory: TrajectoryReader | State | None) -> str:
+    """Caption: which kinds are not drawn, "" where all are."""
+    names = without_turns(case, trajectory)
+    return f"left out: {', '.join(names)}, whose orientation was not kept" if names else ""
+
+
+def _has_places(case: Case, trajectory: TrajectoryReader | State) -> bool:
+    kept = len(trajectory) and "position" in trajectory.fields
+    return bool(kept and method_of(case).bodies(case))
+
+
+def _drawn(case: Case, trajectory: TrajectoryReader | State) -> NDArray[np.bool_]:
+    """Of each kind, whether the run kept all that a picture needs of it beside its places."""
+    turned = "orientation" in trajectory.fields
+    return np.array([turned or _round(shape) for shape in method_of(case).bodies(case)])
+
+
+def _rows(
+    case: Case, trajectory: TrajectoryReader | State
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The rows of bodies in a frame, and the kind of each."""
+    before = [group for group in case.groups if "orientation" not in group.has]
+    own = trajectory.id - sum(group.number for group in before)
+    bodies = next(group for group in case.groups if "orientation" in group.has)
+    rows = np.flatnonzero((own >= 0) & (own < bodies.number))
+    return rows, trajectory.species[rows] - sum(len(group.kinds) for group in before)
+
+
+def _names(case: Case) -> tuple[str, ...]:
+    bodies = next(group for group in case.groups if "orientation" in group.has)
+    return tuple(kind.name for kind in bodies.kinds)
 
 
 def require_traces(case: Case, traces: float) -> None:

@@ -93,4 +93,5 @@ def keys(bodies: Bodies) -> tuple[list[Any], list[str]]:
 
     look: Any = {"ls": "", "marker": "o", "ms": 6, "mec": "black", "mew": EDGE}
     names = list(bodies.names)
-    return [Line2D([], [], color=fill(kind), **look) for kind in range(len(names))], names
+    kinds = bodies.shown if names else ()
+    return [Line2D([], [], color=fill(kind), **look) for kind in kinds], names

@@ -120,6 +120,7 @@ class Bodies:
     arrows: (m, 2, 2) tail and tip along the axis of those that swim; swimmers: their kinds (m,).
     traces: (m, 2, 2) pieces of the paths of their centres up to this time.
     called: what each kind is called.
+    shown: kinds that are drawn wherever they can be seen.
     time: of the frame.
     placed: function that returns their parts in space, None in 2D.
     room: the least and the largest depth, in space.
@@ -131,14 +132,15 @@ class Bodies:
     swimmers: NDArray[np.int64]
     traces: Array
     called: tuple[str, ...]
+    shown: tuple[int, ...]
     time: float
     placed: Callable[[], Any] | None = None
     room: tuple[float, float] = (0.0, 0.0)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the kinds in a legend; none where there is one kind only."""
-        return self.called if len(self.called) > 1 else ()
+        """Names of the kinds `shown` in a legend; none where the case has one kind only."""
+        return tuple(self.called[kind] for kind in self.shown) if len(self.called) > 1 else ()
 
 
 @dataclass(frozen=True)

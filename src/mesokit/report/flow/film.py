@@ -20,7 +20,7 @@ from mesokit.report.caption import at
 from mesokit.report.finish.origin import Origin, origin_of
 from mesokit.report.finish.saving import foot_strip
 from mesokit.report.flow.beads import BeadFrames, frames_of
-from mesokit.report.flow.bodies import BodyFrames, bodies_of
+from mesokit.report.flow.bodies import BodyFrames, bodies_of, left_out
 from mesokit.report.flow.colouring import in_film
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
@@ -158,6 +158,7 @@ def animate(
         notes.append(moving.where(kind == "bodies"))
         if how == "mean":
             notes.append(_smeared(moving, source.time, number))
+    notes.append(left_out(case, trajectory))
     drawn = Canvas(panels, [first] * len(panels), reaches, shown, section, True, notes)
     drawn.figure.set_dpi(DPI[ending])
     progress.start(len(means), case.particles, "drawing")

@@ -12,7 +12,7 @@ from mesokit.errors import CaseError
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report.caption import at, rounded, symbols
 from mesokit.report.flow.beads import frames_of
-from mesokit.report.flow.bodies import bodies_of
+from mesokit.report.flow.bodies import bodies_of, left_out
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
 from mesokit.report.flow.noise import note, smooth, smoothing
@@ -104,6 +104,7 @@ def picture(
         length = min(view.traces or 0.0, bodies.time)
         paths = f", their paths of {at(length, 4, '')}" if length else ""
         notes += [f"bodies at {at(bodies.time, 4)}{paths}", moving.where(kind == "bodies")]
+    notes.append(left_out(case, trajectory))
     for spheres in filter(None, (flow.spheres for flow in flows)):
         notes += [f"at {at(spheres.time, 4)}", spheres.remark, spheres.note]
     if any(panel.NEEDS == "headings" for panel in panels):
