@@ -168,8 +168,13 @@ def test_round_bodies_need_no_orientation_and_others_do(tmp_path):
     assert len(figure.axes) == 1
     for one in (body("ellipse", 2), body("disk", 2, swim=SWIM)):
         case = make_case(SIZE, bodies=[one])
-        with pytest.raises(RunError, match=r'fields = \["position", "orientation"\]$'):
+        needed, more = "this picture needs places and orientations of bodies", "add to the case and"
+        with pytest.raises(RunError, match=r'fields = \["position", "orientation"\]$') as error:
             picture(case, {}, frames_of(case, [[8, 9]]), "bodies")
+        said = f"bodies: {needed}, and the run kept their places alone; {more}"
+        assert str(error.value).startswith(said)
+        with pytest.raises(RunError, match=f"^bodies: {needed}, and the run kept none of them"):
+            picture(case, {}, None, "bodies")
     case = make_case(SIZE)
     with pytest.raises(CaseError, match=r"^kind = 'bodies': the case has no bodies"):
         picture(case, {}, None, "bodies")

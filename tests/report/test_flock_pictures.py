@@ -21,6 +21,7 @@ from mesokit import (
     Simulation,
     Trajectory,
 )
+from mesokit.report.flow import picture
 from mesokit.report.flow.birds import colours
 
 OBSERVED = [PolarOrder(every=1), NumberFluctuations(every=1), DensityBands(every=1)]
@@ -77,6 +78,9 @@ def test_what_is_missing_is_said_in_one_line(tmp_path):
     with pytest.raises(RunError, match=r"positions and velocities.*fields = ") as error:
         files.flow(kind="flock")
     assert "\n" not in str(error.value)
+    assert "and the run kept their positions alone; add" in str(error.value)
+    with pytest.raises(RunError, match="velocities of particles, and the run kept none of them"):
+        picture(files.case, {}, None, "flock")
     with pytest.raises(CaseError, match="kind = 'disks'"):
         files.flow(kind="disks")
 

@@ -29,6 +29,7 @@ WORDS = {
     "bodies": "places and orientations of bodies",
     "sites": "states of sites",
 }
+PLACES = {"headings": "positions", "bodies": "places"}  # a part of these words, kept alone
 AT_ONCE = (
     "particles",
     "spheres",
@@ -57,14 +58,15 @@ OF_TRAJECTORIES = {  # of methods that offer no flow-frames
 
 
 class Found(list["Source"]):
-    """Sources over two axes, the axes of the maps that were kept but are over others, and what
-    would give what is not there."""
+    """Sources over two axes, the axes of the maps that were kept but are over others, what would
+    give what is not there, and of what the places were kept without the rest (`places`)."""
 
     def __init__(
         self, axes: Axes, others: Sequence[Axes] = (), remedy: Mapping[str, str] = REMEDY
     ) -> None:
         super().__init__()
         self.axes, self.others, self.remedy = axes, list(dict.fromkeys(others)), remedy
+        self.places: set[str] = set()
 
     def lack(self, needs: str, kept: str) -> str:
         """Maps that were kept, and what to add to the case, if it lacks the maps."""
@@ -107,6 +109,7 @@ def sources(
 
     Raises CaseError for axes that the box has not, or of which no map was kept.
     """
+    from mesokit.report.flow.bodies import without_turns
     from mesokit.report.flow.map_sources import FieldSource, FrameSource
     from mesokit.report.flow.setting import Setting
     from mesokit.report.flow.sites import SiteSource
@@ -132,13 +135,19 @@ def sources(
         if set(over) == set(chosen):
             make = FrameSource if result.drawing == "frames" else FieldSource
             found.append(make(Setting.of(case, chosen), result))
+    if any("particles" in source.gives for source in found):
+        found.places.add("headings")
     if trajectory is not None and "site" in trajectory.fields and len(trajectory):
         group = next(group for group in case.groups if "site" in group.has)
         found.append(SiteSource(case, trajectory, group, view._replace(axes=chosen)))
     if trajectory is not None and "position" in trajectory.fields and len(trajectory):
         found.append(TrajectorySource(case, trajectory, chosen))
+        if (trajectory.id < case.particles).any():
+            found.places.add("headings")
         if trajectory.diameter is not None:
             found.append(SphereSource(case, trajectory, view._replace(axes=chosen)))
+    if without_turns(case, trajectory):
+        found.places.add("bodies")
     return found
 
 
@@ -160,6 +169,8 @@ def choose(found: Found, needs: str, kind: str, in_time: bool) -> Source:
     if fitting and not in_time:
         return fitting[0]
     kept = "only their mean over the whole run" if fitting else "none of them"
+    if not fitting and needs in found.places:
+        kept = f"their {PLACES[needs]} alone"
     raise RunError(
         f"{kind}: this picture needs {WORDS[needs]}{' in time' * in_time}, and the run kept "
         f"{found.lack(needs, kept)}"
