@@ -10,14 +10,20 @@ from mesokit import (
     SRD,
     ATPlusA,
     Box,
+    Capsule,
     Case,
     CaseError,
+    Cuboid,
     Disk,
+    Ellipse,
     Fluid,
     MaxwellBoltzmann,
     NoCollision,
     Plates,
+    Rectangle,
     Run,
+    Sphere,
+    Spheroid,
     SRDPlusA,
     Trajectory,
     theory,
@@ -178,6 +184,51 @@ WARNED = {
         "counter_force = true",
     ),
 }  # fmt: skip
+
+
+SMALL, ONE = Disk([1, 0], 2), Disk([0, 0], 3)  # the first touches the second from within
+LONG = Capsule([-4, 0], [4, 0], 1)
+HIDDEN = {  # in which part each is
+    "a disk": ((SMALL, ONE), {1: 2}),
+    "a disk that reaches out": ((Disk([1.01, 0], 2), ONE), {}),
+    "a rod": ((Rectangle([0, 0], [10.2, 2.2]), LONG), {2: 1}),
+    "a rod that reaches out": ((Rectangle([0, 0], [9.9, 2.2]), LONG), {}),
+    "corners": ((ONE, Rectangle([0, 0], [4, 4])), {2: 1}),
+    "corners that reach out": ((ONE, Rectangle([0, 0], [4.3, 4.3])), {}),
+    "an ellipse": ((Ellipse([0, 0], [5, 4]), ONE, SMALL), {1: 2, 3: 2}),
+    "equal ones": ((Ellipse([0, 0], [6, 6]), ONE), {1: 2}),
+}
+
+
+@pytest.mark.parametrize("name", HIDDEN)
+def test_parts_inside_of_another_are_named(name):
+    parts, expected = HIDDEN[name]
+    said = warnings_of([24, 24], UnionBody(parts=parts), **HELD, word="wholly")
+    assert said == [
+        f"bodies[#1].parts[#{part}]: wholly inside parts[#{other}], so that it adds nothing to "
+        "shape and mass, but repels by gaps of its own; leave it out"
+        for part, other in expected.items()
+    ]
+    body = UnionBody(parts=parts, interaction=GapPotential(depth=0))
+    bare = warnings_of([24, 24], body, **HELD, word="wholly")
+    assert [", but" in line for line in bare] == [False] * len(expected)
+
+
+def test_parts_inside_of_another_in_three_dimensions():
+    parts = [
+        Cuboid([0, 0, 0], [6, 6, 6]), Sphere([1, 0, 0], 2), Sphere([1.1, 0, 0], 2),
+        Capsule([0, 0, -1], [0, 1, 1], 2), Spheroid([0, 0, 0], 1, 3, [1, 1, 0]),
+    ]  # fmt: skip
+    said = warnings_of([24] * 3, UnionBody(parts=parts), word="wholly inside parts[#1]")
+    assert [line.partition(":")[0] for line in said] == [
+        f"bodies[#1].parts[#{n}]" for n in (2, 4, 5)
+    ]
+
+
+def test_a_part_inside_of_another_adds_no_mass():
+    """But for what sampling is off by."""
+    masses = [body.mass_in(2, 10) for body in (UnionBody(parts=[ONE, SMALL]), DiskBody(radius=3))]
+    assert masses[0] == pytest.approx(masses[1], rel=0.004)
 
 
 def test_a_torque_along_the_axes_of_a_body_may_turn_it_about_its_hinge():

@@ -16,7 +16,7 @@ from mesokit.case.registry import family_of
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import slit_of, solids_of
-from mesokit.method.mpcd.body.inertia import separate_pieces
+from mesokit.method.mpcd.body.inertia import hidden_parts, separate_pieces
 from mesokit.method.mpcd.body.protocol import named
 from mesokit.method.mpcd.checks.bodies import THIN_BODY
 from mesokit.method.mpcd.expected import setting
@@ -176,6 +176,12 @@ def _body_warnings(case: Case, numbers: Derived) -> Iterator[str]:
         key, solid, mass = f"bodies[#{i}]", kind.solid(d), kind.mass_in(d, density)
         if solid.overlaps:
             yield f"{key}.parts: some overlap, so its volume and inertia are sampled on a grid"
+        more = ", but repels by gaps of its own" * (kind.interaction.depth > 0)
+        for part, other in hidden_parts(solid, d):
+            yield (
+                f"{key}.parts[#{part + 1}]: wholly inside parts[#{other + 1}], so that it adds "
+                f"nothing to shape and mass{more}; leave it out"
+            )
         if (apart := separate_pieces(solid, d)) > 1:
             yield (
                 f"{key}.parts: they lie apart, in {apart} pieces, which move as one body with "

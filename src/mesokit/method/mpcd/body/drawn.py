@@ -30,7 +30,7 @@ def drawn_as(parts: Sequence[Part], dimension: int) -> dict[str, Any]:
     if len(parts) == 1 and parts[0].kind == "ellipsoid" and parts[0].numbers[3:6] == UPRIGHT:
         along, wide = parts[0].numbers[6:8]
         return {"type": "Ellipsoid", "a": along, "b": wide, "c": wide}
-    corners = [_corners(part, dimension) for part in parts]
+    corners = [corners_of(part, dimension) for part in parts]
     if len(parts) > 1:
         return _mesh(corners, dimension)
     if dimension == 2:
@@ -64,7 +64,7 @@ def _hull(corners: Floats, dimension: int) -> Any:
     return ConvexHull(corners[:, :dimension])
 
 
-def _corners(part: Part, dimension: int) -> Floats:
+def corners_of(part: Part, dimension: int) -> Floats:
     """Places (n, 3) on the surface of a primitive, all of its corners among them."""
     p = np.array(part.numbers)
     if part.kind == "brick":

@@ -16,6 +16,7 @@ from mesokit.geometry.primitive import PRIMITIVES
 from mesokit.geometry.primitive.moments import Integrals, plane
 from mesokit.geometry.region import Part, Region, moved
 from mesokit.kernels.later import kernel
+from mesokit.method.mpcd.body.drawn import corners_of
 from mesokit.scalar.pointer import address
 from mesokit.scalar.vector import row
 
@@ -107,6 +108,33 @@ def separate_pieces(solid: Solid, dimension: int) -> int:
     near = np.zeros(at.max(axis=0) + 1, bool)
     near[tuple(at.T)] = _inside(parts, places, step) > 0
     return int(ndimage.label(near, np.ones((3,) * dimension))[1])
+
+
+def hidden_parts(solid: Solid, dimension: int) -> list[tuple[int, int]]:
+    """Numbers of parts that lie wholly in another one, and of that one, from 0.
+
+    Of an ellipsoid it is places on the surface that do.
+    """
+    found: list[tuple[int, int]] = []
+    for i, part in enumerate(solid.parts):
+        places, radius = _core(part, dimension)
+        for j, other in enumerate(solid.parts):
+            if j == i or (j, i) in found:
+                continue
+            if (_inside([other], places, -radius - INSIDE) > 0).all():
+                found.append((i, j))
+                break
+    return found
+
+
+def _core(part: Part, dimension: int) -> tuple[Floats, float]:
+    """Places (n, d) and a distance: a convex solid holds the part if it holds all that is so near
+    to these places."""
+    p = np.array(part.numbers)
+    if part.kind in ("brick", "ellipsoid"):
+        return corners_of(part, dimension)[:, :dimension], 0.0
+    ends = [p[:3]] if part.kind == "ball" else [p[:3], p[:3] + p[3:6]]
+    return np.array(ends)[:, :dimension], float(p[6])
 
 
 def is_inside(solid: Solid, place: Sequence[float]) -> bool:
