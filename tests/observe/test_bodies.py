@@ -384,6 +384,22 @@ def test_across_a_hinge_there_is_no_rotational_mobility():
     assert notes == ["fixed", "fixed", ""]
 
 
+def test_what_a_trap_holds_has_no_mobility():
+    keys = {"radius": 1.5, "number": 4, "force": (3.0, 2.0), "torque": 4.0}
+    turning = "rotational mobility about z"
+    for trap, left in (
+        (BodyTrap(k=2), [turning]),
+        (BodyTrap(angular=2), ["mobility along x", "mobility along y"]),
+        (BodyTrap(k=2, angular=2), []),
+    ):
+        kind = DiskBody(**keys, trap=trap)
+        result = seen(BodyDrift(), moving_disks(bodies=(kind,), observe=[BodyDrift()]))
+        names = [c.what for c in result.comparisons]
+        assert [name for name in names if "mobility" in name] == left
+        held = [name for name in names if result[name].note == "held by a trap"]
+        assert len(held) == 3 - len(left)
+
+
 def run_of(**more):
     simulation = Simulation(moving_disks(**more), threads=1)
     simulation.run()

@@ -21,7 +21,7 @@ class BodyDrift(Observable):
 
     Also the mean of the velocity along each body's own axis x, by which swimmers swim. Over a
     constant force along an axis of the box the velocity is the mobility, and over a torque the
-    angular velocity is that of rotation. What is fixed has neither.
+    angular velocity is that of rotation. What is fixed, or held by a trap, has neither.
     """
 
     quantity: Literal["body-drift"] = tag("body-drift")
@@ -66,22 +66,28 @@ class BodyDriftAccumulator(BlockAccumulator):
     def _unit(self, k: int) -> str:
         return "a/tau" if k <= self.dimension else "1/tau"
 
-    def _fixed(self, k: int) -> bool:
-        """Whether the case keeps a component at 0: by what is fixed, or across a hinge."""
-        kind, d = self.of.kind, self.dimension
-        if k < d:
-            return AXES[k] in kind.fixed
+    def _held(self, k: int) -> str:
+        """Why the mean of a component is 0: what is fixed, across a hinge, or held by a trap."""
+        kind, d, trap = self.of.kind, self.dimension, self.of.kind.trap
         if k == d:
-            return not self.of.moving
-        across = kind.hinge is not None and d == 3 and not kind.hinge[self.turning[k - d - 1]]
-        return across or "orientation" in kind.fixed
+            return "" if self.of.moving else "fixed"
+        if k < d:
+            held = "held by a trap" if trap is not None and trap.k > 0 else ""
+            return "fixed" if AXES[k] in kind.fixed else held
+        axis = self.turning[k - d - 1]
+        across = kind.hinge is not None and d == 3 and not kind.hinge[axis]
+        if across or "orientation" in kind.fixed:
+            return "fixed"
+        direction = (1.0, 0.0, 0.0) if trap is None or trap.direction is None else trap.direction
+        turns_freely = trap is None or trap.angular == 0 or (d == 3 and bool(direction[axis]))
+        return "" if turns_freely else "held by a trap"
 
     def comparisons(self, names: list[str]) -> Iterator[Comparison]:
         mean, error = self.blocks.mean().tolist(), self.blocks.error().tolist()
         rest = np.nan if setting.driven(self.case) else 0.0
         for k, name in enumerate(names):
             known, why = (rest, "") if k != self.dimension else self.of.swimming_speed()
-            known, why = (0.0, "fixed") if self._fixed(k) else (known, why)
+            known, why = (0.0, self._held(k)) if self._held(k) else (known, why)
             known = rest if np.isnan(known) else known
             yield Comparison(name, mean[k], error[k], known, self._unit(k), why)
         kind, d = self.of.kind, self.dimension
@@ -89,12 +95,12 @@ class BodyDriftAccumulator(BlockAccumulator):
             return
         torque = np.atleast_1d(kind.torque if kind.torque is not None else 0.0)
         for k, force in enumerate(kind.force or ()):
-            if force and not self._fixed(k):
+            if force and not self._held(k):
                 what, (known, why) = f"mobility along {AXES[k]}", self.of.mobility()
                 found = mean[k] / force, error[k] / abs(force)
                 yield Comparison(what, *found, known, "tau/m", why)
         for k, size in enumerate(torque[: len(self.turning)].tolist()):
-            if size and not self._fixed(d + 1 + k):
+            if size and not self._held(d + 1 + k):
                 what = f"rotational mobility about {AXES[self.turning[k]]}"
                 known, why = self.of.rotational_mobility()
                 found = mean[d + 1 + k] / size, error[d + 1 + k] / abs(size)
