@@ -150,11 +150,26 @@ def count_inside(code, numbers, depth, zero, places, found):
             found[n] += 1
 
 
+@kernel
+def lower_distance(code, numbers, zero, places, least):
+    """Lower distances (n,) of places (n, d) to those from a part."""
+    for n in range(len(places)):
+        c = primitive.distance(code, numbers, numbers, row(places, n, zero))
+        least[n] = min(least[n], c)
+
+
 def _sampled(parts: list[Part], own: list[Integrals], d: int) -> Integrals:
-    """Those of a union whose parts overlap, from the small cubes with their middle in it."""
+    """Those of a union whose parts overlap, from small cubes.
+
+    Of one that the surface cuts, the share inside is that of a plane across an axis.
+    """
     places, step = _grid(parts, own, d)
-    inside = np.pad(places[_inside(parts, places) > 0], ((0, 0), (0, 3 - d)))
-    centre, small = inside.mean(axis=0), step**d
-    away = inside - centre
-    second = away.T @ away + len(inside) * step**2 / 12.0 * plane(d)
-    return Integrals(small * len(inside), centre, small * second)
+    least, table = np.full(len(places), np.inf), np.array([part.numbers for part in parts])
+    for part, numbers in zip(parts, table, strict=True):
+        lower_distance(part.code, address(numbers), (0.0,) * d, places, least)
+    share = np.clip(0.5 - least / step, 0.0, 1.0)
+    cubes, whole = np.pad(places, ((0, 0), (0, 3 - d))), float(share.sum())
+    centre, small = share @ cubes / whole, step**d
+    away = cubes - centre
+    second = (share[:, None] * away).T @ away + whole * step**2 / 12.0 * plane(d)
+    return Integrals(small * whole, centre, small * second)
