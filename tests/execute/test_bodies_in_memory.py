@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy import linalg
 
+from mesokit import Plates
 from mesokit.kernels.kernel import kernel
 from mesokit.method.mpcd.body.inertia import _grid, _inside, solid_of
 from mesokit.method.mpcd.engine.bodies import linear, state
@@ -39,9 +40,10 @@ def test_volume_and_inertia_are_those_of_many_small_cubes(name, d):
 
 @pytest.fixture(scope="module")
 def spatial():
-    """One body of each shape in 3D, at places of their own."""
+    """One body of each shape in 3D, at places of their own; of a kind that laws are tested with."""
     kinds = [body(name, 3, number=1, density=30) for name in SPATIAL]
-    return make_fluid((40, 20, 20), density=1, bodies=kinds).bodies
+    walls = [Plates(axis="z")]
+    return make_fluid((40, 20, 20), density=1, bodies=kinds, walls=walls).bodies
 
 
 @kernel

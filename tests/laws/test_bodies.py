@@ -14,19 +14,28 @@ FAST = {"timestep": 0.1}
 HELD = FAST | {"thermostat": MaxwellBoltzmann(), "measures": ("stress",)}  # one compiled kind
 
 
+def between(d, virtual="fill"):
+    """Plates in 3D, so that tests of walls and of three dimensions share a compiled kind."""
+    return {"walls": [Plates(axis="z", virtual=virtual)]} if d == 3 else {}
+
+
+def momentum_of_all(fluid):
+    """Momentum of fluid and bodies, with what walls took."""
+    return fluid.totals()[1] + fluid.wall_impulse[:, : fluid.dimension].sum(axis=0)
+
+
 @pytest.mark.parametrize("surface", ["no-slip", "slip"])
 @pytest.mark.parametrize(("name", "d"), SHAPES)
 def test_hits_keep_momentum_and_energy(name, d, surface):
     """Without virtual particles nothing brings energy; no particle is ever in a body."""
     one = body(name, d, surface=surface, virtual="none")
-    fluid = make_fluid(SIZES[d], bodies=[one], **FAST)
-    first, energy = fluid.bodies.velocities, fluid.totals()[2]
+    fluid = make_fluid(SIZES[d], bodies=[one], measures=("walls",), **between(d, "none"), **FAST)
+    first, energy, momentum = fluid.bodies.velocities, fluid.totals()[2], momentum_of_all(fluid)
     for _ in range(10):
         fluid.advance(10)
         assert not fluid.bodies.inside(fluid.positions()).any()
-    _, momentum, later = fluid.totals()
-    assert abs(momentum).max() < 1e-12 * fluid.n
-    assert later == pytest.approx(energy, rel=1e-12)
+    assert abs(momentum_of_all(fluid) - momentum).max() < 1e-12 * fluid.n
+    assert fluid.totals()[2] == pytest.approx(energy, rel=1e-12)
     assert abs(fluid.bodies.velocities - first).max() > 1e-3
 
 
@@ -44,10 +53,11 @@ def test_no_flight_into_a_body_is_missed(name, d):
 
 @pytest.mark.parametrize("d", [2, 3])
 def test_virtual_particles_keep_momentum(d):
-    fluid = make_fluid(ROOM[d], bodies=SOME[d], **FAST)
+    fluid = make_fluid(ROOM[d], bodies=SOME[d], measures=("walls",), **between(d), **FAST)
+    momentum = momentum_of_all(fluid)
     fluid.advance(100)
     assert fluid.memory.bodies.counters[0, 4] > 20  # virtual particles
-    assert abs(fluid.totals()[1]).max() < 1e-12 * fluid.n
+    assert abs(momentum_of_all(fluid) - momentum).max() < 1e-12 * fluid.n
 
 
 def in_thermal_units(fluid, steps, every=2):
@@ -118,7 +128,7 @@ IDLE = {"torque": 1e-30, "counter": CounterForce(shell=1.5)}
 SHEARED = {"collision": SRDPlusA(angle=90), "thermostat": MaxwellBoltzmann()}
 KINDS = {
     "2D": {"size": ROOM[2], "bodies": SOME[2]},
-    "3D": {"size": ROOM[3], "bodies": SOME[3]},
+    "3D": {"size": ROOM[3], "bodies": SOME[3], **between(3)},
     "sheared": {
         "size": ROOM[2], "bodies": (*DRIVEN, body("union", 2)), "shear_rate": 0.05, **SHEARED,
     },
@@ -134,7 +144,10 @@ def state_of(fluid):
     return [np.asarray(array) for _, array in sorted(fluid.state().items())]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+SLIT = pytest.param("slit", marks=pytest.mark.long)  # one more kind: the same between plates in 2D
+
+
+@pytest.mark.parametrize("kind", ["2D", "3D", "sheared", SLIT])
 def test_threads_and_restarts_change_no_bit(kind):
     """Also from two bodies that are near each other, at many hits in a step."""
     case = make_case(**KINDS[kind], timestep=0.2)
@@ -202,19 +215,29 @@ def test_lists_under_shear_hold_for_a_body_that_the_flow_does_not_carry():
         assert_same(state_of(kept), state_of(anew))
 
 
-def test_walls_take_the_momentum_that_bodies_and_fluid_lose():
+PRESSED = {  # bodies, and how near to a plate their centres may come
+    "3D": {"sphere": 2.0, "spheroid": 1.5, "cuboid": 1.5, "union": 1.3},
+    "slit": {"disk": 2.0, "rectangle": 1.5, "union": 1.0},
+}
+
+
+@pytest.mark.parametrize(("kind", "size", "steps"), [
+    ("3D", (14, 13, 12), 500),
+    pytest.param("slit", ROOM[2], 1200, marks=pytest.mark.long),
+], ids=PRESSED)  # fmt: skip
+def test_walls_take_the_momentum_that_bodies_and_fluid_lose(kind, size, steps):
     """Forces press bodies of all sorts against a plate, which their gaps hold off."""
-    down = {"force": (0, -30)}
-    pressed = [body(name, 2, **down) for name in ("disk", "rectangle", "union")]
-    case = KINDS["slit"] | {"bodies": pressed}
+    d, pressed, down = len(size), PRESSED[kind], 30.0 * np.eye(len(size))[-1]
+    bodies = [body(name, d, force=tuple(-down)) for name in pressed]
+    case = KINDS[kind] | {"size": size, "bodies": bodies, "density": 5 if d == 3 else 10}
     fluid = make_fluid(**case, timestep=0.2, measures=("walls",))
-    before, taken = fluid.totals()[1], fluid.wall_impulse[:, :2].sum(axis=0)
-    fluid.advance(1200)
-    lost = before - fluid.totals()[1] + [0.0, -3 * 30 * 1200 * 0.2]
-    taken = fluid.wall_impulse[:, :2].sum(axis=0) - taken
-    np.testing.assert_allclose(taken, lost, atol=1e-9 * fluid.n)
-    gaps = fluid.bodies.places()[:, 1] - [2.0, 1.5, 1.0]
-    assert (gaps < 3.0).all() and abs(taken[1]) > 1000.0, gaps
+    before = momentum_of_all(fluid)
+    fluid.advance(steps)
+    change = momentum_of_all(fluid) - before
+    np.testing.assert_allclose(change, -len(pressed) * down * steps * 0.2, atol=1e-9 * fluid.n)
+    gaps = fluid.bodies.places()[:, -1] - list(pressed.values())
+    taken = fluid.wall_impulse[:, d - 1].sum()
+    assert (gaps < 3.0).all() and abs(taken) > 1000.0, gaps
 
 
 def test_a_squirmer_swims_along_its_axis_and_takes_no_momentum():
