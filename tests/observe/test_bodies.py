@@ -166,7 +166,7 @@ def test_the_slope_of_places_is_that_after_the_longest_wave_of_the_box():
     """Its flow brings more than half of the diffusion of a disk, so that earlier slopes are low."""
     memory = 14**2 / (4 * np.pi**2 * setting.solvent(moving_disks()).viscosity)
     lag = round(6 * memory / STEP)
-    result = walked(BodyDisplacement(max_lag=lag), 20 * lag, 0.1)
+    result = walked(BodyDisplacement(max_lag=lag), 10 * lag, 0.1)
     fitted = result.x["time"][np.isfinite(result.fit)]
     assert fitted.min() >= 2 * memory and fitted.max() == pytest.approx(lag * STEP, rel=0.2)
     assert result.comparisons[0].note == ""
