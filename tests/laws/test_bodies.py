@@ -14,9 +14,15 @@ FAST = {"timestep": 0.1}
 HELD = FAST | {"thermostat": MaxwellBoltzmann(), "measures": ("stress",)}  # one compiled kind
 
 
-def between(d, virtual="fill"):
-    """Plates in 3D, so that tests of walls and of three dimensions share a compiled kind."""
-    return {"walls": [Plates(axis="z", virtual=virtual)]} if d == 3 else {}
+# Shapes, dimensions, and whether plates are there. Bodies in 3D are between plates, so that tests
+# of walls and of three dimensions share a compiled kind; without plates they are long tests.
+WALLED = [(name, d, d == 3) for name, d in SHAPES]
+WALLED += [pytest.param(name, 3, False, marks=pytest.mark.long) for name, d in SHAPES if d == 3]
+
+
+def between(walled, virtual="fill"):
+    """Plates across z, or none."""
+    return {"walls": [Plates(axis="z", virtual=virtual)]} if walled else {}
 
 
 def momentum_of_all(fluid):
@@ -25,11 +31,11 @@ def momentum_of_all(fluid):
 
 
 @pytest.mark.parametrize("surface", ["no-slip", "slip"])
-@pytest.mark.parametrize(("name", "d"), SHAPES)
-def test_hits_keep_momentum_and_energy(name, d, surface):
+@pytest.mark.parametrize(("name", "d", "walled"), WALLED)
+def test_hits_keep_momentum_and_energy(name, d, walled, surface):
     """Without virtual particles nothing brings energy; no particle is ever in a body."""
-    one = body(name, d, surface=surface, virtual="none")
-    fluid = make_fluid(SIZES[d], bodies=[one], measures=("walls",), **between(d, "none"), **FAST)
+    one, plates = body(name, d, surface=surface, virtual="none"), between(walled, "none")
+    fluid = make_fluid(SIZES[d], bodies=[one], measures=("walls",), **plates, **FAST)
     first, energy, momentum = fluid.bodies.velocities, fluid.totals()[2], momentum_of_all(fluid)
     for _ in range(10):
         fluid.advance(10)
@@ -39,10 +45,11 @@ def test_hits_keep_momentum_and_energy(name, d, surface):
     assert abs(fluid.bodies.velocities - first).max() > 1e-3
 
 
-@pytest.mark.parametrize(("name", "d"), SHAPES)
-def test_no_flight_into_a_body_is_missed(name, d):
+@pytest.mark.parametrize(("name", "d", "walled"), WALLED)
+def test_no_flight_into_a_body_is_missed(name, d, walled):
     """What is seen without following a flight leaves no particle in a body, to be put outside."""
-    fluid = make_fluid(SIZES[d], bodies=[body(name, d, virtual="none")], **FAST)
+    some, plates = [body(name, d, virtual="none")], between(walled, "none")
+    fluid = make_fluid(SIZES[d], bodies=some, measures=("walls",), **plates, **FAST)
     put_outside = 0
     for _ in range(100):
         fluid.advance(1)
@@ -53,7 +60,7 @@ def test_no_flight_into_a_body_is_missed(name, d):
 
 @pytest.mark.parametrize("d", [2, 3])
 def test_virtual_particles_keep_momentum(d):
-    fluid = make_fluid(ROOM[d], bodies=SOME[d], measures=("walls",), **between(d), **FAST)
+    fluid = make_fluid(ROOM[d], bodies=SOME[d], measures=("walls",), **between(d == 3), **FAST)
     momentum = momentum_of_all(fluid)
     fluid.advance(100)
     assert fluid.memory.bodies.counters[0, 4] > 20  # virtual particles
