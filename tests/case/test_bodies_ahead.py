@@ -82,8 +82,8 @@ def test_the_fraction_is_of_what_walls_leave():
 @pytest.mark.parametrize(
     ("body", "surface", "cost"),
     [
-        (SphereBody(radius=3, number=2), 2 * 36 * math.pi, 40),
-        (CapsuleBody(length=8, radius=2), 3 * (16 + 32 / 3) * math.pi / 2, 170),  # 3 V / R
+        (SphereBody(radius=3, number=2), 2 * 36 * math.pi, 25),
+        (CapsuleBody(length=8, radius=2), 3 * (16 + 32 / 3) * math.pi / 2, 100),  # 3 V / R
     ],
     ids=["balls", "a rod"],
 )

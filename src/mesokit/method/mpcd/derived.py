@@ -33,7 +33,7 @@ COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.3, "shear": 1.2, "thread
 MOLECULE, SUBSTEP = 5e-9, 1e-9
 BEAD, BEAD_SUBSTEP = 100e-9, 45e-9  # and for each step and sub-step of a bead of a solute
 # and for each particle that the fluid has in a unit of a body's surface, in steps of particles
-NEAR_BALL, NEAR_SHAPE = 40.0, 170.0
+NEAR_BALL, NEAR_SHAPE = 25.0, 100.0
 SAMPLE = 12e-9  # seconds for each particle in each sample of an observable
 BYTES = {
     "particle 2D": 68,
