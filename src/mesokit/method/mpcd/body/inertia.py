@@ -15,6 +15,7 @@ from mesokit.geometry import primitive
 from mesokit.geometry.primitive import PRIMITIVES
 from mesokit.geometry.primitive.moments import Integrals, plane
 from mesokit.geometry.region import Part, Region, moved
+from mesokit.geometry.solids.cut_cube import share_and_depth
 from mesokit.kernels.later import kernel
 from mesokit.method.mpcd.body.drawn import corners_of
 from mesokit.scalar.pointer import address
@@ -151,23 +152,28 @@ def count_inside(code, numbers, depth, zero, places, found):
 
 
 @kernel
-def lower_distance(code, numbers, zero, places, least):
-    """Lower distances (n,) of places (n, d) to those from a part."""
+def fill_cubes(code, numbers, step, zero, places, least, share):
+    """Share (n,) of small cubes about places (n, d) that is in parts, by the nearest of them.
+
+    A plane stands for the surface. `least` (n,) are the distances of those that came before.
+    """
     for n in range(len(places)):
-        c = primitive.distance(code, numbers, numbers, row(places, n, zero))
-        least[n] = min(least[n], c)
+        r = row(places, n, zero)
+        c = primitive.distance(code, numbers, numbers, r)
+        if c < least[n]:
+            least[n], share[n] = c, 1.0 if c < 0.0 else 0.0
+            if abs(c) < step:
+                _, normal = primitive.facing(code, numbers, numbers, r)
+                share[n], _ = share_and_depth(c / step, normal)
 
 
 def _sampled(parts: list[Part], own: list[Integrals], d: int) -> Integrals:
-    """Those of a union whose parts overlap, from small cubes.
-
-    Of one that the surface cuts, the share inside is that of a plane across an axis.
-    """
+    """Those of a union whose parts overlap, from small cubes and the share of each inside."""
     places, step = _grid(parts, own, d)
-    least, table = np.full(len(places), np.inf), np.array([part.numbers for part in parts])
+    table, zero = np.array([part.numbers for part in parts]), (0.0,) * d
+    least, share = np.full(len(places), np.inf), np.zeros(len(places))
     for part, numbers in zip(parts, table, strict=True):
-        lower_distance(part.code, address(numbers), (0.0,) * d, places, least)
-    share = np.clip(0.5 - least / step, 0.0, 1.0)
+        fill_cubes(part.code, address(numbers), step, zero, places, least, share)
     cubes, whole = np.pad(places, ((0, 0), (0, 3 - d))), float(share.sum())
     centre, small = share @ cubes / whole, step**d
     away = cubes - centre
