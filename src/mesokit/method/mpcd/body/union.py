@@ -1,14 +1,17 @@
 """Several shapes as one body that moves in the fluid."""
 
+from dataclasses import fields
 from typing import ClassVar, Literal
 
-from mesokit.case.component import component, param, tag
+from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
 from mesokit.geometry.primitive import MOVABLE
 from mesokit.geometry.region import Region, Room
 from mesokit.geometry.shape_protocol import Movable
 from mesokit.method.mpcd.body.protocol import Body
+
+OF_WALLS = ("surface", "virtual", "opens", "name")  # what a shape has as a wall alone
 
 
 @component
@@ -27,6 +30,15 @@ class UnionBody(Body):
         for i, part in enumerate(self.parts, start=1):
             if part.fluid == "inside":
                 raise ValueError(f"parts[#{i}].fluid = 'inside': expected a solid")
+            for field in fields(part):
+                value = getattr(part, field.name)
+                if field.name in OF_WALLS and value != getattr(
+                    field.default, "default", field.default
+                ):
+                    raise ValueError(
+                        f"parts[#{i}].{field.name} = {show(value)}: not of a part; parts have only "
+                        "a shape, and the body has the rest"
+                    )
             if part in self.parts[: i - 1]:
                 first = self.parts.index(part) + 1
                 raise ValueError(f"parts[#{i}]: the same as parts[#{first}]; expected another part")
