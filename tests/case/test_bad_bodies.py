@@ -109,6 +109,11 @@ FILES = {
         "bodies[#1].swim.B1 = 0: a squirmer needs B1, B2 or both other than 0",
     SPACE + BALL + 'surface = "slip"\nswim = { B1 = 1 }\n':
         "bodies[#1].swim: not with surface = 'slip', which drags no fluid along",
+    SPACE + BALL + 'surface = "slip"\ntorque = [0, 0, 1]\n':
+        "bodies[#1].torque = [0, 0, 1]: not on a ball with surface = 'slip', whose spin nothing "
+        "slows",
+    PLANE + DISK + 'surface = "slip"\ntorque = 2\n':
+        "bodies[#1].torque = 2: not on a ball with surface = 'slip', whose spin nothing slows",
     SPACE + BALL + 'surface = "slip"\nvirtual = "fill"\n':
         "bodies[#1].virtual = 'fill': not with surface = 'slip', which has no virtual particles; "
         "expected 'none'",
@@ -132,6 +137,15 @@ FILES = {
     SPACE + '[[bodies]]\nshape = "union"\nparts = [' + ", ".join(
         f'{{ shape = "sphere", centre = [{x}, 0, 0], radius = 2 }}' for x in (0, 3, 0)
     ) + "]\n": "bodies[#1].parts[#3]: the same as parts[#1]; expected another part",
+    **{
+        SPACE + '[[bodies]]\nshape = "union"\nparts = [{ shape = "sphere", centre = [0, 0, 0], '
+        f"radius = 2, {key} = {given} }}]\n":
+        f"bodies[#1].parts[#1].{key} = {said}: not of a part; parts have only a shape, and the "
+        "body has the rest"
+        for key, given, said in (
+            ("virtual", '"none"', "'none'"), ("opens", "20", "20"), ("name", '"a"', "'a'"),
+        )
+    },
     SPACE + '[[bodies]]\nshape = "union"\nparts = [{ shape = "sphere", centre = [0, 0, 0], '
     'radius = 2, fluid = "inside" }]\n': "bodies[#1].parts[#1].fluid = 'inside': expected a solid",
     **{

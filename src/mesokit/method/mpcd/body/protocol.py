@@ -344,6 +344,12 @@ class Body(ABC):
             raise ValueError("swim: only of a sphere, disk, spheroid or ellipse")
         if self.swim is not None and self.surface == "slip":
             raise ValueError("swim: not with surface = 'slip', which drags no fluid along")
+        turned = self.surface == "slip" and np.any(self.torque or 0.0)
+        if turned and all(self.solid(d).ball for d in self.dimensions):
+            raise ValueError(
+                f"torque = {show(self.torque)}: not on a ball with surface = 'slip', whose spin "
+                "nothing slows"
+            )
         if self.swim is not None and self.swim.tumble_rate:
             held = "a hinge" if self.hinge is not None else "fixed = 'orientation'"
             if self.hinge is not None or "orientation" in self.fixed:
