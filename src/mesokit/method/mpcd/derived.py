@@ -201,7 +201,9 @@ def _rough_rows(case: Case, name: str) -> list[Row]:
     """What theory expects of one body of a kind alone, or of disks as in a lattice."""
     kind, rows = followed(case, "check", name), []
     found = kind.roughly()
-    of = "a lattice" if kind.number > 1 and case.box.dimension == 2 else "one in a wide fluid"
+    of = "one in a wide fluid"
+    if case.box.dimension == 2:
+        of = "a lattice" if kind.number > 1 else "one in this box"
     if found.speed > 0:
         said = f"estimate, of {of}; Reynolds number {found.reynolds:.3g}"
         rows.append((f"speed of {name}", number(found.speed, "a/tau"), said))
