@@ -187,6 +187,26 @@ def test_held_bodies_take_the_theory_of_a_shear_flow_away(holds):
     assert (found.profile is None) == bool(holds)
 
 
+def test_no_hit_turns_a_ball_with_a_slip_surface():
+    """Nor a body of revolution about its own axis."""
+    disks = DiskBody(radius=1.5, number=4, surface="slip")
+    names = [c.what for c in seen(BodyMotion(), moving_disks(bodies=(disks,))).comparisons]
+    assert any("mean square velocity" in name for name in names)
+    assert not any("angular" in name for name in names)
+    drift = seen(BodyDrift(), moving_disks(bodies=(disks,), observe=[BodyDrift()]))
+    spin = drift["angular velocity about z"]
+    assert spin.note == "as it started: no hit turns it" and np.isnan(spin.expected)
+    for observable in (BodyDisplacement(of="angles"), BodyCorrelation(of="angular velocity")):
+        with pytest.raises(CaseError, match="turns about no axis freely"):
+            moving_disks(bodies=(disks,), observe=[observable])
+    slippery = [
+        mesokit.SpheroidBody(half_length=3, radius=2, surface="slip"),
+        mesokit.CuboidBody(size=(4, 3, 3), surface="slip"),
+    ]
+    case = Case(run=Run(1), box=Box([16, 16, 16]), fluid=Fluid(), bodies=slippery)
+    assert [one.untouched for one in every_kind(case, "this")] == [(0,), ()]
+
+
 def test_bodies_that_move_have_a_share_of_the_pressure():
     still = DiskBody(radius=1.5, number=2, fixed=("x", "y"))
     assert setting.carriers(moving_disks())[1] == pytest.approx(5 + 3 / 14**2)

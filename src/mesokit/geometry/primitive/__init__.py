@@ -5,8 +5,9 @@ the solid, or something of its sign that is no larger; `normal(p, samples, r)`; 
 solid is CONVEX. One whose distance takes long also has `nearer(p, samples, r, reach)`, whether that
 is below a reach, and `facing(p, samples, r)`, both distance and normal. p is a row of WIDTH
 numbers, of which the first three are a place, so that all can be moved alike. A primitive of which
-bodies that move can be made is convex, and also has its `extent`, its `width` and its `integrals`.
-The kind of each part is a number at run time: one compiled step serves every case.
+bodies that move can be made is convex, and also has its `extent`, its `width` and its `integrals`;
+one of revolution about the vector in p[3:6] is ROUND. The kind of each part is a number at run
+time: one compiled step serves every case.
 """
 
 from types import ModuleType
@@ -29,6 +30,7 @@ PRIMITIVES += (ellipsoid,)
 KINDS = {module.__name__.rpartition(".")[2]: number for number, module in enumerate(PRIMITIVES)}
 WIDTH = 12
 CONVEX = tuple(module.CONVEX for module in PRIMITIVES)
+ROUND = tuple(hasattr(module, "ROUND") for module in PRIMITIVES)
 MOVABLE = tuple(hasattr(module, "integrals") for module in PRIMITIVES)
 
 

@@ -11,6 +11,7 @@ from mesokit.scalar.jit import scalar
 from mesokit.scalar.pointer import real
 
 CONVEX = True
+ROUND = True
 
 
 @scalar

@@ -15,6 +15,7 @@ from mesokit.scalar.pointer import real
 from mesokit.scalar.vector import added_scaled, dot
 
 CONVEX = True
+ROUND = True
 
 
 @scalar

@@ -18,6 +18,7 @@ from mesokit.scalar.pointer import real
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 CONVEX = True
+ROUND = True
 LEAST = 1e-20  # halves: no place counts as nearer to the plane across the shorter half
 MOST_TRIES = 100
 CONVERGED = 1e-9  # relative: the step after one so small would be less than rounding

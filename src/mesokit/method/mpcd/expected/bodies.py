@@ -12,6 +12,8 @@ from mesokit import theory
 from mesokit.case.case import Case
 from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
+from mesokit.geometry.primitive import ROUND
+from mesokit.geometry.region import Part
 from mesokit.method.mpcd.body.protocol import named
 from mesokit.method.mpcd.columns import holds, kinds_of_bodies, total_mass, turns
 from mesokit.method.mpcd.expected import setting
@@ -33,6 +35,12 @@ class Estimates(NamedTuple):
     diffusion: float
     reynolds: float
     time: float
+
+
+def revolves_about_x(part: Part) -> bool:
+    """Whether a primitive is a body of revolution about axis x of its frame."""
+    across = (*part.numbers[1:3], *part.numbers[4:6])
+    return ROUND[part.code] and not np.any(np.abs(across) > ROUNDING)
 
 
 class Followed(NamedTuple):
@@ -58,11 +66,26 @@ class Followed(NamedTuple):
 
     @property
     def turning(self) -> tuple[int, ...]:
-        """Axes, of three, about which they turn freely: in 2D about z alone."""
+        """Axes, of three, about which they turn freely: in 2D about z alone.
+
+        None of balls with a slip surface, whose spin nothing changes.
+        """
         dimension = self.case.box.dimension
-        if self.kind.hinge is not None and dimension == 3:
+        if self.untouched == (0, 1, 2) or (self.kind.hinge is not None and dimension == 3):
             return ()
         return ((), (2,), (), (0, 1, 2))[turns(self.kind, dimension)]
+
+    @property
+    def untouched(self) -> tuple[int, ...]:
+        """Own axes about which no hit turns them: a slip surface pushes along its normal, through
+        the centre of a ball and through the axis of a body of revolution."""
+        if self.kind.surface != "slip":
+            return ()
+        if self.ball:
+            return (0, 1, 2)
+        parts = self.kind.solid(self.case.box.dimension).parts
+        about_x = all(revolves_about_x(part) for part in parts)
+        return (0,) if self.case.box.dimension == 3 and about_x else ()
 
     @property
     def ball(self) -> bool:
@@ -251,9 +274,9 @@ class Followed(NamedTuple):
             speed *= 1.0 - self._carried_back(force, mobility, eta)
         if self.kind.swim is not None:
             speed += abs(theory.squirmer_speed(self.kind.swim.B1, d, self.kind.aspect))
-        if not any(free) or (self.kind.trap is not None and self.kind.trap.k):
-            speed = 0.0
         diffusion = float(self.case.fluid.kT) * mobility
+        if not any(free) or (self.kind.trap is not None and self.kind.trap.k):
+            speed, diffusion = 0.0, math.nan
         return Estimates(
             speed, diffusion, speed * solid.radius / viscosity, solid.radius**2 / diffusion
         )

@@ -89,6 +89,8 @@ class BodyDriftAccumulator(BlockAccumulator):
             known, why = (rest, "") if k != self.dimension else self.of.swimming_speed()
             known, why = (0.0, self._held(k)) if self._held(k) else (known, why)
             known = rest if np.isnan(known) else known
+            if k > self.dimension and self.of.untouched == (0, 1, 2) and not why:
+                known, why = np.nan, "as it started: no hit turns it"
             yield Comparison(name, mean[k], error[k], known, self._unit(k), why)
         kind, d = self.of.kind, self.dimension
         if kind.frame == "body" or kind.counter is not None:

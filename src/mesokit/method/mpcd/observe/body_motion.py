@@ -93,8 +93,7 @@ class BodyMotionAccumulator(BlockAccumulator):
         value, error = (a[1 + len(COUNTED) :].reshape(len(self.kinds), -1) for a in (value, error))
         expected, width = np.stack([self._expected(one) for one in self.kinds]), value.shape[1]
         driven = [
-            [not one.thermal and bool(one.turning if i else one.moving) for i in range(width)]
-            for one in self.kinds
+            [not one.thermal and self._free(one, i) for i in range(width)] for one in self.kinds
         ]
         known = np.isfinite(expected) | np.array(driven)
         about = [""] if self.dimension == 2 else [f" about {axis}" for axis in AXES]
@@ -111,13 +110,19 @@ class BodyMotionAccumulator(BlockAccumulator):
             theory="equipartition",
         )
 
+    def _free(self, one: Followed, i: int) -> bool:
+        """Whether the fluid moves bodies of a kind, or turns them about the ith axis, from 1."""
+        if i == 0:
+            return bool(one.moving)
+        return bool(one.turning) and self.axes[i - 1] not in one.untouched
+
     def _expected(self, one: Followed) -> Array:
         """Of a kind: nan where it does not move or turn freely, or something drives it."""
         found = np.full(1 + len(self.axes), np.nan)
         if one.thermal and one.moving:
             found[0] = one.free_share
         if one.thermal and one.turning:
-            found[1:] = 1.0
+            found[1:] = [np.nan if k in one.untouched else 1.0 for k in self.axes]
         return found
 
     def of_kinds(
@@ -126,8 +131,7 @@ class BodyMotionAccumulator(BlockAccumulator):
         why = self.driven()
         for k, one in enumerate(self.kinds):
             for i, name in enumerate(names):
-                free = one.turning if i else one.moving
-                if np.isfinite(expected[k, i]) or (free and not one.thermal):
+                if np.isfinite(expected[k, i]) or (self._free(one, i) and not one.thermal):
                     found, known = float(value[k, i]), float(expected[k, i])
                     scatter = one.with_start(float(error[k, i]), known, self.blocks.series)
                     unit = "kT/I" if i else f"{len(one.moving)} kT/M"
