@@ -349,7 +349,8 @@ def _fast_bodies(case: Case) -> Iterator[str]:
                 f"bodies[#{i}]: a velocity of so heavy a body lasts {lasts:.2g} tau, longer than "
                 f"the run of {length:.2g} tau: its motion stays that of the start"
             )
-        less = "B1" if kind.swim is not None else "force"
+        causes = {"B1": kind.swim is not None, "force": np.any(kind.force or 0.0)}
+        less = " or ".join(cause for cause, acts in causes.items() if acts)
         known = setting.solvent(case)
         mach = found.speed / (known.sound_speed if known else setting.sound_speed(case))
         if _above(mach, FAST_BODY):
@@ -369,7 +370,7 @@ def _fast_bodies(case: Case) -> Iterator[str]:
                 yield (
                     f"bodies[#{i}]: expected U d/nu = {apart:.2g}, of its speed and the distance "
                     f"of its counter-force; above {INERTIAL_PAIR[d]:g} inertia takes or gives more "
-                    "than a tenth of the speed; a smaller force"
+                    f"than a tenth of the speed; a smaller {less}"
                 )
 
 
