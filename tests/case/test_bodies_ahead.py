@@ -393,3 +393,11 @@ def test_they_run_on_ranks_of_processors_alone():
     case = case_of([20, 20], DiskBody(radius=3))
     assert list(refused(case)) == ["no bodies that move yet; expected --device cpu"]
     METHOD.check_ranks(case, 2)
+
+
+@pytest.mark.parametrize("holds", [{"fixed": ("x", "y")}, {"trap": BodyTrap(k=1.0)}, {}])
+def test_bodies_that_are_held_show_no_diffusion(holds):
+    case = case_of([20, 20], DiskBody(radius=2, **holds))
+    rows = {name: word for name, _, word in summary(case).rows}
+    assert "bodies disk-1" in rows
+    assert ("diffusion of disk-1" in rows) == (not holds)

@@ -199,15 +199,15 @@ def body_rows(case: Case) -> list[Row]:
 
 def _rough_rows(case: Case, name: str) -> list[Row]:
     """What theory expects of one body of a kind alone, or of disks as in a lattice."""
-    kind, rows = followed(case, "check", name), []
-    found = kind.roughly()
+    body, rows = followed(case, "check", name), []
+    found = body.roughly()
     of = "one in a wide fluid"
     if case.box.dimension == 2:
-        of = "a lattice" if kind.number > 1 else "one in this box"
+        of = "a lattice" if body.number > 1 else "one in this box"
     if found.speed > 0:
         said = f"estimate, of {of}; Reynolds number {found.reynolds:.3g}"
         rows.append((f"speed of {name}", number(found.speed, "a/tau"), said))
-    if math.isfinite(found.diffusion):
+    if math.isfinite(found.diffusion) and body.moving and not body.trapped:
         said = f"estimate, of {of}; R^2/D = {found.time:.3g} tau"
         rows.append((f"diffusion of {name}", number(found.diffusion, "a^2/tau"), said))
     return rows

@@ -194,10 +194,14 @@ class Followed(NamedTuple):
         return radius**2 / nu, length**2 / (4 * math.pi**2 * nu)
 
     @property
+    def trapped(self) -> bool:
+        """Whether springs hold them to places."""
+        return self.kind.trap is not None and self.kind.trap.k > 0
+
+    @property
     def held(self) -> bool:
         """Whether springs hold them to places that do not slide past one another."""
-        there = self.kind.trap is not None and self.kind.trap.k > 0
-        return there and bool(self.moving) and not self.case.box.sheared
+        return self.trapped and bool(self.moving) and not self.case.box.sheared
 
     def trapped_square(self) -> tuple[float, str]:
         """Mean square distance from a trap along one axis, by Boltzmann's distribution."""
@@ -274,9 +278,9 @@ class Followed(NamedTuple):
             speed *= 1.0 - self._carried_back(force, mobility, eta)
         if self.kind.swim is not None:
             speed += abs(theory.squirmer_speed(self.kind.swim.B1, d, self.kind.aspect))
+        if not any(free) or self.trapped:
+            speed = 0.0
         diffusion = float(self.case.fluid.kT) * mobility
-        if not any(free) or (self.kind.trap is not None and self.kind.trap.k):
-            speed, diffusion = 0.0, math.nan
         return Estimates(
             speed, diffusion, speed * solid.radius / viscosity, solid.radius**2 / diffusion
         )
