@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 from common import RUNS, SHORT, Page, sources
@@ -14,16 +14,22 @@ from common import RUNS, SHORT, Page, sources
 from mesokit import (
     SRD,
     ATPlusA,
+    BodyMotion,
     Box,
     Case,
     Comparison,
+    DiskBody,
     Fluid,
     GapPotential,
     MaxwellBoltzmann,
     Rectangle,
     Run,
     Simulation,
+    Sphere,
+    SphereBody,
+    SpheroidBody,
     SRDPlusA,
+    UnionBody,
     every,
     theory,
 )
@@ -45,6 +51,8 @@ SLIP = {  # slip lengths that rotation gives on the page of bodies in flow; of p
     ("at+a", 2): 0.070, ("srd+a", 2): 0.080, ("at+a", 3): 0.054, ("srd+a", 3): 0.037,
     ("srd", 3): 0.151,
 }  # fmt: skip
+DUMBBELL = (Sphere(centre=(-1.6, 0, 0), radius=1.7), Sphere(centre=(1.4, 0, 0), radius=1.3))
+L_SHAPE = (Rectangle(centre=(0, 0), size=(6, 2)), Rectangle(centre=(2, 2.5), size=(2, 3)))
 WARMUP = {2: 1000, 3: 400}  # steps, in which a flow in these boxes builds up
 SURE = 3.0  # standard errors within which a law is met
 PREFACE = (
@@ -97,6 +105,47 @@ def case_of(body: Any, side: int, rule: str, length: float, *observe: Any, **mor
         box=Box(size, shear_rate=more.pop("shear_rate", 0.0)),
         fluid=fluid(rule, more.pop("timestep", STEP)), bodies=bodies, observe=list(observe), **more,
     )  # fmt: skip
+
+
+class AtRest(NamedTuple):
+    """A body at rest in a box: its name, side of the box, rule, timestep, and steps of its run."""
+
+    name: str
+    body: Any
+    side: int
+    rule: str
+    timestep: float
+    length: float
+
+    @property
+    def key(self) -> str:
+        """What the folders of its runs end with."""
+        return f"{self.name}-{self.rule}-{self.timestep}".replace(" ", "")
+
+    def case(self, share: float = 1.0) -> Case:
+        """Its motion, over a share of the steps."""
+        length = share * self.length
+        return case_of(
+            self.body, self.side, self.rule, length, BodyMotion(), timestep=self.timestep
+        )
+
+
+def at_rest() -> Iterator[AtRest]:
+    """Shapes of unequal sizes at three timesteps, and a sphere in SRD."""
+    for name, body, side, length in (
+        ("sphere R = 2", SphereBody(radius=2), 12, 5e4),
+        ("sphere R = 3", SphereBody(radius=3), 16, 1.5e4),
+        ("sphere R = 5", SphereBody(radius=5), 20, 7e3),
+        ("spheroid 6 x 3", SpheroidBody(half_length=3, radius=1.5), 12, 3e4),
+        ("union of spheres", UnionBody(parts=DUMBBELL), 12, 3e4),
+        ("disk R = 2", DiskBody(radius=2), 16, 1.2e5),
+        ("disk R = 3", DiskBody(radius=3), 24, 1e5),
+        ("disk R = 5", DiskBody(radius=5), 30, 9e4),
+        ("union, an L", UnionBody(parts=L_SHAPE), 20, 1e5),
+    ):
+        for timestep in (0.05, STEP, 0.3):
+            yield AtRest(name, body, side, "at+a", timestep, length)
+    yield AtRest("sphere R = 2", SphereBody(radius=2), 12, "srd", STEP, 5e4)
 
 
 def ran(page: Page, name: str, case: Case) -> Any:

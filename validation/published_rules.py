@@ -15,23 +15,20 @@ import os
 import sys
 
 from common import Page
-from moving_bodies import STEP, case_of
+from moving_bodies import STEP, AtRest, at_rest
 
-from mesokit import BodyMotion, Case, DiskBody, SphereBody
 from mesokit.method.mpcd.engine.bodies import gas, hits
 from mesokit.method.mpcd.engine.bodies.linear import X
 from mesokit.scalar.jit import seldom
 
 RULE_SETS = {"hits": (hits,), "gas": (gas,), "both": (hits, gas)}
 SHARE = 0.6  # of the steps, in runs with published rules
-CASES = ("sphere-srd", "disk-at+a")
 
 
-def case_of_published(name: str, share: float = 1.0) -> Case:
-    """One of `CASES`, with the steps of the run with rules of the program times a share."""
-    if name == "sphere-srd":
-        return case_of(SphereBody(radius=2), 12, "srd", share * 5e4, BodyMotion(), timestep=STEP)
-    return case_of(DiskBody(radius=2), 16, "at+a", share * 1.2e5, BodyMotion(), timestep=STEP)
+def with_published() -> list[AtRest]:
+    """The bodies at rest at the usual timestep, and disks and spheres of radius 2 at all."""
+    round_ones = ("sphere R = 2", "disk R = 2")
+    return [one for one in at_rest() if one.timestep == STEP or one.name in round_ones]
 
 
 @seldom
@@ -48,8 +45,8 @@ def main(which: str) -> None:
     if gas in RULE_SETS[which]:
         gas.solve_noise = no_change
     page = Page("bodies", "")
-    for name in CASES:
-        page.run(f"published-{which}-{name}", case_of_published(name, SHARE))
+    for one in with_published():
+        page.run(f"published-{which}-{one.key}", one.case(SHARE))
 
 
 if __name__ == "__main__":
