@@ -25,6 +25,7 @@ LISTED = 6.0  # thermal velocities: lists hold so fast flights; of faster ones a
 STRIDES = 0.05  # cells: surfaces rarely go farther in a timestep
 FAST = 5.0  # thermal velocities: few particles are faster, and those are tested one by one
 NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a run
+BENT = 1e-6  # cells: a flight among walls may be bent, so its path is longer than if straight
 ROOM = 2.0  # times as many particles near bodies as there are on average
 MASS_BITS = 40
 Floats = NDArray[np.float64]
@@ -140,6 +141,7 @@ def allocate_bodies(numbers: Numbers, threads: int, waste: int, domain: Any = No
     solids: Solids | None = numbers.solids
     diffuse = any(body.surface.rule == "diffuse" for body in (solids.bodies if solids else []))
     further = 2.0 * fluid.timestep * fastest_surface(case) + NEVER * thermal * diffuse
+    further += BENT * (solids is not None)
     shear = box.largest_rate * float(box.size[1]) * fluid.timestep
     travel = FAST * thermal + further + 0.5 * shear
     radii = np.array([kind.solid(d).radius for kind in case.bodies])
