@@ -90,6 +90,14 @@ def test_files_of_others_have_the_shapes_of_bodies(ended, tmp_path):
     assert (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() == 16  # to the left, twice 8
     assert frame.particles.orientation == pytest.approx(last["orientation"], abs=1e-6)
     assert turned[:, 2] == pytest.approx(last["spin"], abs=1e-6)
+    disk, plank = 0.5 * 5 * np.pi * 1.5**4, 60 * (4**2 + 2**2) / 12
+    inertia = frame.particles.moment_inertia
+    assert inertia == pytest.approx(np.array([[0, 0, disk]] * 3 + [[0, 0, plank]]), rel=1e-6)
+    momentum = np.zeros((4, 4))  # in 2D 2 q (0, L) is 2 L (-sin, 0, 0, cos) of half the angle
+    own = inertia[:, 2] * turned[:, 2]
+    momentum[:, 0] = -2 * own * frame.particles.orientation[:, 3]
+    momentum[:, 3] = 2 * own * frame.particles.orientation[:, 0]
+    assert frame.particles.angmom == pytest.approx(momentum, rel=1e-5, abs=1e-6)
     assert frame.particles.position[:, :2] == pytest.approx(last["position"] - 7, abs=1e-5)
 
     with h5py.File(run.export(tmp_path / "bodies.h5md")) as file:
@@ -183,6 +191,30 @@ def test_ovito_draws_bodies_to_scale(d, name, diameter, tmp_path):
         assert shape["diameter"] == diameter == pytest.approx(size)
     elif shape["type"] == "Ellipsoid":
         assert 2 * max(shape[key] for key in "abc") == diameter == pytest.approx(size)
+
+
+def test_a_file_has_moments_of_inertia_and_spins_of_turned_bodies(tmp_path):
+    """Quaternions 2 q (0, L), L in the frame of the body."""
+    from scipy.spatial.transform import Rotation
+
+    turn = np.array([[0.5, -0.5, 0.5, 0.5], [1, 0, 0, 0]])
+    spin, inertia = np.array([[0.1, -0.2, 0.3], [1, 2, 3]]), (2.0, 5.0, 4.0)
+    particles = Particles(
+        number=np.arange(2), kind=np.array([1, 0]), mass=np.ones(2), names=("beads", "bricks"),
+        diameter=np.ones(2), molecule=np.array([-1, -1]), bonds=np.zeros((0, 2), int), dimension=3,
+        size=np.full(3, 12.0), closed=(False,) * 3, inertia={1: inertia},
+    )  # fmt: skip
+    now = Moment(0, 0.0, 0.0, np.zeros((2, 3)), None, None, spin, turn)
+    gsd_file.write(tmp_path / "one.gsd", particles, [now])
+    with gsd.hoomd.open(str(tmp_path / "one.gsd")) as file:
+        found = file[0].particles
+    assert found.moment_inertia.tolist() == [[2, 5, 4], [0, 0, 0]]
+    rotation = Rotation.from_quat(turn[0], scalar_first=True)
+    momentum = inertia * rotation.inv().apply(spin[0])
+    product = rotation * Rotation.from_rotvec(np.pi * momentum / np.linalg.norm(momentum))
+    expected = 2 * np.linalg.norm(momentum) * product.as_quat(scalar_first=True)
+    np.testing.assert_allclose(found.angmom[0], expected, rtol=1e-6)
+    assert not found.angmom[1].any()
 
 
 def volume_of(mesh):

@@ -21,7 +21,8 @@ class Kind(NamedTuple):
     """Equal particles: mass of each, how many there are, and what files for others call them.
 
     `diameter` is that of a particle in pictures, in cells. `shape` is what files for others call
-    one that is no sphere, with its own axes: an entry of `particles/type_shapes` of GSD.
+    one that is no sphere, with its own axes: an entry of `particles/type_shapes` of GSD. `inertia`
+    (3,) are moments about these axes, where they are principal ones of a rigid body.
     """
 
     mass: float
@@ -29,6 +30,7 @@ class Kind(NamedTuple):
     name: str = ""
     diameter: float = 0.5
     shape: Mapping[str, Any] | None = None
+    inertia: tuple[float, float, float] | None = None
 
 
 SUSPENDED = "suspended"  # all groups but the first

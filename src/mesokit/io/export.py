@@ -181,6 +181,7 @@ def _particles(
     size[: case.box.dimension] = case.box.size
     closed = method_of(case).enclosure.closed_axes(case) | {*range(case.box.dimension, 3)}
     names, drawn = names_and_diameters(case.groups)
+    kinds = [one for group in case.groups for one in group.kinds]
     return Particles(
         number=number,
         kind=kind,
@@ -193,11 +194,8 @@ def _particles(
         size=size,
         closed=(0 in closed, 1 in closed, 2 in closed),
         spheres=diameter is not None,
-        shapes={
-            k: one.shape
-            for k, one in enumerate(one for group in case.groups for one in group.kinds)
-            if one.shape is not None
-        },
+        shapes={k: one.shape for k, one in enumerate(kinds) if one.shape is not None},
+        inertia={k: one.inertia for k, one in enumerate(kinds) if one.inertia is not None},
     )
 
 

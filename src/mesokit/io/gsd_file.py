@@ -75,6 +75,7 @@ def _snapshot(frame: Any, file: Any, index: int) -> Snapshot:
         spins=spins,
         orientations=np.asarray(particles.orientation, float) if stored("orientation") else None,
         kinds=np.array(particles.types, dtype=object)[np.asarray(particles.typeid, np.int64)],
+        shapes=dict(zip(particles.types, particles.type_shapes or (), strict=False)),
     )
 
 
@@ -99,7 +100,8 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     are bodies with numbers below -1. That an axis is closed has no place in such files.
 
     Spins are there twice: as the angular momenta and moments of inertia of the schema, and as
-    `log/particles/angular_velocity`, of which OVITO makes a property of the particles.
+    `log/particles/angular_velocity`, of which OVITO makes a property of the particles. Bodies whose
+    own axes are not principal ones of inertia have moments of 0, as the schema has no others.
 
     Diameters are those of spheres and the longest axes of ellipsoids; of other shapes they are 2,
     so that OVITO draws them to scale.
@@ -122,10 +124,8 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     ]
     frame.particles.typeid, frame.particles.mass = kinds, particles.mass
     frame.particles.diameter = _diameters(particles)
-    # of uniform spheres, in 2D of disks about z
-    share = np.array([0, 0, 1 / 8] if particles.dimension == 2 else [1 / 10] * 3)
-    inertia = (particles.mass * particles.diameter**2)[:, None] * share
-    if particles.spheres:
+    inertia = _moments_of_inertia(particles)
+    if inertia.any():
         frame.particles.moment_inertia = inertia
     # -1: in no body; 0 and above: rigid ones, which molecules are not
     frame.particles.body = np.where(particles.molecule < 0, -1, -2 - particles.molecule)
@@ -145,9 +145,30 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             frame.log = {"time": np.array([now.time])}
             if now.spin is not None:
                 frame.log[SPIN.removeprefix("log/")] = now.spin
-                if particles.spheres:  # quaternions 2 q (0, L) of those not rotated, q = 1
-                    frame.particles.angmom = np.pad(2 * (now.spin * inertia), ((0, 0), (1, 0)))
+                if inertia.any():
+                    frame.particles.angmom = _angular_momenta(now, inertia)
             file.append(frame)
+
+
+def _moments_of_inertia(particles: Particles) -> Any:
+    """Moments (n, 3) of bodies, and of uniform spheres, in 2D disks about z; else 0."""
+    if particles.spheres:
+        share = np.array([0, 0, 1 / 8] if particles.dimension == 2 else [1 / 10] * 3)
+        return (particles.mass * particles.diameter**2)[:, None] * share
+    kinds = range(len(particles.names))
+    return np.array([particles.inertia.get(k, (0.0, 0.0, 0.0)) for k in kinds])[particles.kind]
+
+
+def _angular_momenta(now: Moment, inertia: Any) -> Any:
+    """Quaternions (n, 4) 2 q (0, L), L in the frame of each particle; spheres keep q = 1."""
+    spin = np.asarray(now.spin, float)
+    if now.orientation is None:
+        return np.pad(2 * (spin * inertia), ((0, 0), (1, 0)))
+    s, v = np.split(np.asarray(now.orientation, float), [1], axis=1)
+    twist = -2.0 * np.cross(v, spin)
+    momentum = inertia * (spin + s * twist - np.cross(v, twist))
+    scalar = -(v * momentum).sum(axis=1, keepdims=True)
+    return 2.0 * np.concatenate([scalar, s * momentum + np.cross(v, momentum)], axis=1)
 
 
 def _diameters(particles: Particles) -> Any:

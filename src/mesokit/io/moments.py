@@ -16,7 +16,7 @@ class Particles(NamedTuple):
     `names` of the kinds; `diameter` (n,); `molecule` (n,) from 0, -1 for single particles; `bonds`
     (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` axes. `spheres`: whether
     particles are of these diameters, and not only drawn so. `shapes`: those of kinds that are no
-    spheres, by the number of the kind, as GSD has them.
+    spheres, by the number of the kind, as GSD has them; `inertia` (3,): moments about their axes.
     """
 
     number: NDArray[np.int64]
@@ -31,6 +31,7 @@ class Particles(NamedTuple):
     closed: tuple[bool, bool, bool]
     spheres: bool = False
     shapes: Mapping[int, Mapping[str, Any]] = MappingProxyType({})
+    inertia: Mapping[int, tuple[float, float, float]] = MappingProxyType({})
 
 
 class Moment(NamedTuple):

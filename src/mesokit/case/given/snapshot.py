@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,9 +19,9 @@ class Snapshot(NamedTuple):
 
     `positions` (n, 3); `velocities` (n, 3), `images` (n, 3), `masses` (n,), `diameters` (n,) and
     `spins` (n, 3), angular velocities, or None where the file has none, likewise `orientations`
-    (n, 4), quaternions, and `kinds` (n,), names; `bonds` (b, 2), rows of the particles that are
-    linked; `numbers` (n,), what the file calls them; `low` and `lengths` (3,) of
-    the box, `tilts` (3,) of its edges.
+    (n, 4), quaternions, and `kinds` (n,), names, with `shapes` as GSD has them; `bonds` (b, 2),
+    rows of the particles that are linked; `numbers` (n,), what the file calls them; `low` and
+    `lengths` (3,) of the box, `tilts` (3,) of its edges.
     """
 
     positions: Floats
@@ -35,6 +37,7 @@ class Snapshot(NamedTuple):
     spins: Floats | None = None
     orientations: Floats | None = None
     kinds: NDArray[Any] | None = None
+    shapes: Mapping[str, Mapping[str, Any]] = MappingProxyType({})
 
     def scaled(self, scale: float) -> Snapshot:
         """The same with all lengths times a factor; times and masses stay."""

@@ -10,6 +10,7 @@ from mesokit.method.mpcd.body.drawn import drawn_as
 from mesokit.method.mpcd.body.protocol import named
 from mesokit.seam.method import BodyShape
 
+Floats = NDArray[np.float64]
 OF_BODIES = ("position", "velocity", "spin", "orientation", "image", "id")
 
 
@@ -44,8 +45,17 @@ def _bodies(case: Case) -> tuple[Kind, ...]:
     for name, kind in named(case.bodies):
         solid = kind.solid(d)
         shape, mass = drawn_as(solid.parts, d), kind.mass_in(d, density)
-        found.append(Kind(mass, kind.number, name, 2.0 * solid.radius, shape))
+        inertia = _moments(mass / solid.volume * solid.moments, d)
+        found.append(Kind(mass, kind.number, name, 2.0 * solid.radius, shape, inertia))
     return tuple(found)
+
+
+def _moments(inertia: Floats, dimension: int) -> tuple[float, float, float] | None:
+    """Of a body about its own axes, None unless those are principal ones; in 2D about z alone."""
+    x, y, z = np.diag(inertia).tolist()
+    if dimension == 2:
+        return 0.0, 0.0, z
+    return (x, y, z) if abs(inertia - np.diag([x, y, z])).max() <= 1e-9 * max(x, y, z) else None
 
 
 def body_shapes(case: Case) -> tuple[BodyShape, ...]:
