@@ -11,6 +11,7 @@ import pytest
 import mesokit
 from mesokit import Box, Case, CaseError, Run, Start
 from mesokit.case.trajectory import Trajectory
+from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.protocol import BodyStart
 from mesokit.method.mpcd.body.sphere import SphereBody
 from mesokit.method.mpcd.start.bodies import first_bodies
@@ -133,6 +134,18 @@ def test_a_kind_that_is_named_must_be_in_the_file(tmp_path):
         places(kind="zz")
 
 
+def test_a_file_of_spheres_is_refused_in_two_dimensions(tmp_path):
+    frame, path = gsd.hoomd.Frame(), str(tmp_path / "two.gsd")
+    frame.configuration.box = [9, 14, 9, 0, 0, 0]
+    frame.particles.N, frame.particles.position = 2, [[0, 0, 0], [0, 0, 3]]
+    with gsd.hoomd.open(path, mode="w") as file:
+        file.append(frame)
+    disks = DiskBody(radius=2, number=2, start=BodyStart(rule="file", file=path))
+    case = Case(run=Run(steps=1), box=Box([9, 9]), bodies=(disks,))
+    with pytest.raises(CaseError, match=r"its particles differ in z; expected a 2D box as in this"):
+        first_bodies(case)
+
+
 def test_arrays_have_bodies(ended, tmp_path):
     bodies, n = ended.engine.bodies, 3
     arrays = {
@@ -161,6 +174,7 @@ def test_what_does_not_fit_is_refused_in_one_line(ended, tmp_path):
     two, out = str(tmp_path / "two.npy"), str(tmp_path / "out.npy")
     more = replace(case, bodies=(replace(case.bodies[0], number=4),))
     wide = replace(case, bodies=(replace(case.bodies[0], radius=1.25),))
+    plank = replace(case, bodies=(replace(case.bodies[0], number=1),))
     where = "bodies[#1].start."
     wrong = [
         (case, {"rule": "run", "run": run, "kind": "dsks"},
@@ -178,6 +192,10 @@ def test_what_does_not_fit_is_refused_in_one_line(ended, tmp_path):
          f"{where}file = '{file}': it has no particles of type 'rods'; it has 'disks' or 'planks'"),
         (more, {"rule": "file", "file": file},
          f"{where}file = '{file}': it has 3 particles of type 'disks', this case 4 bodies"),
+        (wide, {"rule": "file", "file": file},
+         f"{where}file = '{file}': its particles of type 'disks' have another shape or size than "
+         "the bodies of this case"),
+        (plank, {"rule": "file", "file": file, "kind": "planks"}, None),
         (case, {"rule": "file", "file": two},
          f"{where}file = '{two}': ending '.npy': expected '.gsd'"),
         (case, {"rule": "given", "positions": two},

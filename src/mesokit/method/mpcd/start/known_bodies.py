@@ -1,7 +1,8 @@
 """Bodies whose places are known: given in rows or in files, or those of an earlier run."""
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -174,6 +175,7 @@ def _of_file(case: Case, kind: Body, wanted: str) -> KnownBodies:
     Raises CaseError unless box and number are those of the case.
     """
     from mesokit.io import gsd_file
+    from mesokit.method.mpcd.body.drawn import drawn_as
 
     d, start = case.box.dimension, kind.start
     assert start.file is not None
@@ -182,6 +184,14 @@ def _of_file(case: Case, kind: Body, wanted: str) -> KnownBodies:
     there = gsd_file.read(start.file, start.frame)
     require_box(case, there)
     rows = _rows_of_kind(there, kind.number, wanted, start.kind is not None)
+    assert there.kinds is not None
+    name = there.kinds[rows[0]]
+    drawn = there.shapes.get(name)
+    if drawn and not _same_shape(drawn, drawn_as(kind.solid(d).parts, d)):
+        raise CaseError(
+            f"its particles of type {show(name)} have another shape or size than the bodies of "
+            "this case"
+        )
     closed = closed_axes(case.walls)
     size = np.array(case.box.size, float)
     places = (there.positions - there.low)[rows, :d]
@@ -195,6 +205,14 @@ def _of_file(case: Case, kind: Body, wanted: str) -> KnownBodies:
     return KnownBodies(
         places, turns, velocities, None if there.spins is None else there.spins[rows]
     )
+
+
+def _same_shape(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    """Whether two entries of `particles/type_shapes` are equal but for rounding."""
+    if one.keys() != other.keys() or one["type"] != other["type"]:
+        return False
+    pairs = [(np.array(one[key]), np.array(other[key])) for key in one.keys() - {"type"}]
+    return all(a.shape == b.shape and np.allclose(a, b, atol=ROUNDING) for a, b in pairs)
 
 
 def _rows_of_kind(there: Snapshot, number: int, wanted: str, sure: bool) -> NDArray[np.int64]:
