@@ -105,6 +105,8 @@ FILES = {
         "bodies[#1].hinge = [0, 0, 0]: expected a vector other than 0",
     SPACE + BALL + 'hinge = [1, 0, 0]\nfixed = ["orientation"]\n':
         "bodies[#1].hinge: not with fixed = 'orientation', which never turns",
+    SPACE + BALL + 'frame = "body"\n':
+        "bodies[#1].frame = 'body': needs a force or a torque, whose axes it says",
     SPACE + BALL + "swim = {}\n":
         "bodies[#1].swim.B1 = 0: a squirmer needs B1, B2 or both other than 0",
     SPACE + BALL + 'surface = "slip"\nswim = { B1 = 1 }\n':
@@ -278,6 +280,11 @@ CASES = {
         2, [DiskBody(radius=3, hinge=[0, 0, 1])], {},
         "bodies[#1].hinge = [0, 0, 1]: only in 3D; in 2D all bodies turn about z alone",
     ),
+    "a trap about the hinge": (
+        3, [SphereBody(radius=3, hinge=[0, 0, 2], trap=BodyTrap(angular=5, direction=[0, 0, -1]))],
+        {}, "bodies[#1].trap.angular = 5: its direction [0, 0, -1] is along hinge = [0, 0, 2], "
+        "about which it turns nothing; expected one across it",
+    ),
     "a short hinge": (
         3, [SphereBody(radius=3, hinge=[0, 1])], {},
         f"bodies[#1].hinge = [0, 1]: expected 3 {FOR_EACH} 3D box",
@@ -391,6 +398,11 @@ CASES = {
     "nothing to balance": (
         3, [SphereBody(radius=3, counter_force=True)], {},
         "bodies[#1].counter_force = true: needs a force that it balances",
+    ),
+    "a force that is held": (
+        3, [SphereBody(radius=3, fixed=["x", "y", "z"], **PUSHED)], {},
+        "bodies[#1].counter_force = true: not with fixed = ['x', 'y', 'z'], which takes the force; "
+        "use fluid.force to drive a flow past it",
     ),
     "a force that turns": (
         3, [SphereBody(radius=3, frame="body", **PUSHED)], {}, "bodies[#1].counter_force = true: "

@@ -338,6 +338,8 @@ class Body(ABC):
             raise ValueError(f"hinge = {show(self.hinge)}: expected a vector other than 0")
         if self.hinge is not None and "orientation" in self.fixed:
             raise ValueError("hinge: not with fixed = 'orientation', which never turns")
+        if self.frame == "body" and self.force is None and self.torque is None:
+            raise ValueError("frame = 'body': needs a force or a torque, whose axes it says")
         if self.counter is not None:
             self._check_counter(self.counter)
         if self.swim is not None and not self.squirms:

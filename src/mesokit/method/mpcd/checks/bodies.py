@@ -193,9 +193,17 @@ def _vectors(case: Case, kind: Body) -> Iterator[str]:
 
 
 def _idle_trap(case: Case, kind: Body) -> Iterator[str]:
-    """Springs of a trap along what never moves."""
+    """Springs of a trap along what never moves, or about the hinge of a body."""
     if kind.trap is None:
         return
+    towards, hinge = kind.trap.direction or (1.0, 0.0, 0.0), kind.hinge or (0.0, 0.0, 0.0)
+    if kind.trap.angular and kind.hinge is not None and len(towards) == len(hinge) == 3:
+        across = np.linalg.norm(np.cross(towards, hinge))
+        if across <= 1e-9 * np.linalg.norm(towards) * np.linalg.norm(hinge):
+            yield (
+                f"trap.angular = {show(kind.trap.angular)}: its direction {show(towards)} is along "
+                f"hinge = {show(kind.hinge)}, about which it turns nothing; expected one across it"
+            )
     still = all(axis in kind.fixed for axis in case.box.axes), "orientation" in kind.fixed
     for name, idle in zip(("k", "angular"), still, strict=True):
         if idle and getattr(kind.trap, name):
@@ -358,6 +366,11 @@ def _counter_force(case: Case, kind: Body) -> Iterator[str]:
     key = "counter_force = true"
     if kind.force is None:
         yield f"{key}: needs a force that it balances"
+    elif all(axis in kind.fixed for axis in case.box.axes):
+        yield (
+            f"{key}: not with fixed = {show(list(kind.fixed))}, which takes the force; use "
+            "fluid.force to drive a flow past it"
+        )
     if kind.frame == "body":
         yield f"{key}: not with frame = 'body', whose force turns with the body; use 'box'"
     if case.walls:
