@@ -186,6 +186,19 @@ WARNED = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("height", "there"),
+    [(2.5, "2.5 cells from a wall"), (0, "inside a wall"), (20, "inside a wall"), (3, "")],
+)
+def test_a_trap_that_presses_a_body_to_a_wall_is_warned_of(height, there):
+    trapped = DiskBody(radius=3, trap=BodyTrap(k=5, centre=[10, height]))
+    plates = {"walls": [Plates(axis="y")]}
+    assert warnings_of([20, 20], trapped, word="trap.centre", **plates) == [
+        f"bodies[#1].trap.centre = [10, {height}]: {there}, and the body is 6 cells thick: the "
+        "trap presses it against the wall"
+    ] * bool(there)
+
+
 SMALL, ONE = Disk([1, 0], 2), Disk([0, 0], 3)  # the first touches the second from within
 LONG = Capsule([-4, 0], [4, 0], 1)
 HIDDEN = {  # in which part each is

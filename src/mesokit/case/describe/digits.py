@@ -8,3 +8,8 @@ def two_digits(value: float, sign: str = "") -> str:
     ('190', '0.012', '+2')
     """
     return f"{float(f'{value:.2g}'):{sign}g}"
+
+
+def above(value: float, limit: float, digits: int = 2) -> bool:
+    """Whether a value is above a limit even as it is shown, to so many digits."""
+    return float(f"{value:.{digits}g}") > float(f"{limit:.{digits}g}")
