@@ -40,9 +40,9 @@ BYTES = {
     "particle 3D": 88,
     "checkpoint 2D": 108,  # of a particle, while one is written
     "checkpoint 3D": 156,
-    "cell 2D": 60,
-    "cell 3D": 110,
-    "empty cell": 13,  # of a random solvent, far from beads: of all threads together
+    "cell 2D": 64,
+    "cell 3D": 114,
+    "empty cell": 17,  # of a random solvent, far from beads: of all threads together
     "end of a cell": 4,  # of each thread, in an empty cell as well
     "program": 215e6,
     "figures": 115e6,  # to draw them, at the end

@@ -3,9 +3,19 @@
 Sorted particles find their cells in the cache; a few cells of disorder do no harm, so this is done
 rarely. The order is that of a stable counting sort, whatever the number of threads. Molecules are
 sorted as a whole, by the cell of their first bead.
+
+In space cells come in pencils along x, 8 x 8 cells across: a strip of particles, which spreads by a
+few cells along each axis until the next sort, has most of its cells in common with the strip before
+it. Row by row it would have those along x alone. A plane is sorted by rows, of which enough fit in
+the cache, and so is a fluid among solids, for in pencils more strips would have particles near a
+plate.
 """
 
+import math
 from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.case.box import SLIDING, fold, unfold
 from mesokit.kernels.kernel import inner, kernel
@@ -36,6 +46,30 @@ class Order(NamedTuple):
     spare: Any  # (particles,) floats
     whole: Any  # the same memory as whole numbers of 32 bits
     long: Any  # and of 64
+    turn: Any  # (cells,) number of each cell in the order of memory
+
+
+PENCIL = 8  # cells along y and along z
+
+
+def turns_of_cells(cells: tuple[int, ...], solids: bool) -> NDArray[np.int32]:
+    """Number of each cell in the order of memory; that of the spare cell is the last.
+
+    >>> turns_of_cells((2, 16, 1), solids=False)[[0, 2, 14, 16, 1, 32]]  # y = 0, 1, 7, 8; x = 1
+    array([ 0,  1,  7, 16,  8, 32], dtype=int32)
+    """
+    number = np.arange(math.prod(cells) + 1, dtype=np.int32)
+    if len(cells) < 3 or solids:
+        return number
+    along, y, z = (np.arange(n, dtype=np.int32) for n in cells)
+    y, z = y[None, :], z[:, None]
+    # where the pencil of (y, z) begins, and how many cells wide and high it is
+    low_y, low_z = y // PENCIL * PENCIL, z // PENCIL * PENCIL
+    wide, high = (np.minimum(PENCIL, cells[k] - low) for k, low in ((1, low_y), (2, low_z)))
+    before = cells[0] * (cells[1] * low_z + high * low_y)
+    of_row = before + (z - low_z) * wide + y - low_y
+    number[:-1] = (of_row[..., None] + along * (wide * high)[..., None]).ravel()
+    return number
 
 
 @kernel
@@ -111,7 +145,7 @@ def order_by_cell(worker, particles, memory):
     ends[thread] = 0
     # Counting sort. Each thread counts the molecules of its share of memory, by cell.
     for i in range(first, last):
-        ends[thread, cell[place_of_bead(filling, i, 0)]] += 1
+        ends[thread, memory.turn[cell[place_of_bead(filling, i, 0)]]] += 1
     barrier(worker)
     # From counts to the place of each thread's first molecule of each cell, cell by cell and in a
     # cell thread by thread. Shares of threads are in the order of memory, so the sort is stable for
@@ -130,7 +164,7 @@ def order_by_cell(worker, particles, memory):
     barrier(worker)
     # No two threads have a place in common, so all write to `order` at once.
     for i in range(first, last):
-        c = cell[place_of_bead(filling, i, 0)]
+        c = memory.turn[cell[place_of_bead(filling, i, 0)]]
         memory.order[ends[thread, c]] = i
         ends[thread, c] += 1
     barrier(worker)
