@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mesokit.method.mpcd.engine.cpu.sort import turns_of_cells
 from tests.helpers.small_fluids import make_fluid
 
 SIZE = (5, 7)
@@ -47,3 +48,29 @@ def test_order_does_not_depend_on_threads(threads):
         fluid.advance(300)
         orders.append(fluid.memory.fluid.particles.ident[: fluid.n].copy())
     np.testing.assert_array_equal(*orders)
+
+
+@given(cells=st.tuples(st.integers(1, 9), st.integers(1, 20), st.integers(1, 20)))
+def test_cells_in_space_come_in_pencils(cells):
+    """All cells of a pencil lie together, layer by layer along x, in the order of pencils."""
+    turn = turns_of_cells(cells, solids=False)
+    count = np.prod(cells)
+    assert sorted(turn) == list(range(count + 1)) and turn[-1] == count
+    x, y, z = np.unravel_index(np.argsort(turn[:-1]), cells, order="F")
+    pencil, layer = z // 8 * cells[1] + y // 8, z % 8 * 8 + y % 8
+    place = (pencil * cells[0] + x) * 64 + layer
+    assert (np.diff(place) > 0).all()
+
+
+def test_particles_in_space_lie_in_pencils():
+    fluid = make_fluid((3, 12, 10), density=4, threads=1)
+    fluid.sort()
+    order = fluid.memory.fluid.particles.ident[: fluid.n]
+    x, y, z = np.floor(fluid.positions()[order].T).astype(int)
+    place = ((z // 8 * 2 + y // 8) * 3 + x) * 64 + z % 8 * 8 + y % 8
+    assert (np.diff(place) >= 0).all() and len(np.unique(place)) > 300
+
+
+def test_cells_of_a_plane_and_among_solids_come_by_rows():
+    for cells, solids in (((5, 12), False), ((3, 12, 10), True)):
+        np.testing.assert_array_equal(turns_of_cells(cells, solids), np.arange(np.prod(cells) + 1))
