@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from mesokit.case.box import SLIDING
+from mesokit.geometry.solids.bodies import Bodies
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, LAST_LANE, SCRATCH_ROW, lanes_in, share, strip_at, strips_in
 from mesokit.loops.threads import barrier
@@ -56,7 +57,7 @@ from mesokit.method.mpcd.engine.bodies.state import (
 from mesokit.method.mpcd.engine.bodies.stress import take_near_flux
 from mesokit.method.mpcd.engine.cpu import stages
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
-from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
+from mesokit.method.mpcd.engine.cpu.near_solids import FEW, forget, look_around_strip
 from mesokit.method.mpcd.engine.cpu.physics import field_of, of_bodies
 from mesokit.method.mpcd.engine.cpu.strips.ahead import strip_after
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
@@ -105,6 +106,7 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
     gathered, terms = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
     clear, marks = scratch.clear[worker.thread], scratch.marks[worker.thread]
     chosen, impulse = bodies.chosen[worker.thread], fluid.taken.impulse[worker.thread]
+    stride = stride_of(physics.solid)
     sums, here = fluid.cells.sums[worker.thread], bodies.counters[worker.thread]
     tensor, measured = fluid.taken.tensor, now.flags & MEASURE_STRESS
     if now.flags & STREAM:
@@ -126,8 +128,9 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
                 add_strip_flux(physics, now.box, now.old, strip, lanes, tensor[1, s])
         if now.flags & STREAM:
             plain = of_bodies(physics)
-            near = choose_near_bodies(worker, now, plain, bodies, strip, s, lanes, chosen)
-            look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
+            quiet = look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
+            straight = quiet, stride
+            near = choose_near_bodies(worker, now, plain, bodies, strip, s, lanes, straight)
             left = stages.stream_strip(physics, strip, clear, marks)
             if left != 0:
                 for j in range(near):  # they meet walls later
@@ -153,17 +156,26 @@ def stream_around_bodies(worker, now, physics, fluid, bodies):
 
 
 @by_type
-def longest_flight(bodies, physics, r, v):
-    """The longest path that a particle can fly in a timestep."""
-    if field_of(physics, "field").instance_class is Zero:
-        return lambda bodies, physics, r, v: (
-            physics.timestep * math.sqrt(dot(v, v)) + bodies.further
-        )
+def stride_of(solid):
+    """The path on which solids bend no flight of a quiet part of a strip (see `near_solids`)."""
+    return (lambda solid: solid.stride) if solid.instance_class is Bodies else (lambda solid: 0.0)
 
-    def bent(bodies, physics, r, v):
+
+@by_type
+def longest_flight(bodies, physics, r, v, clear):
+    """The longest path that a particle can fly in a timestep; no wall is on one that is clear."""
+    if field_of(physics, "field").instance_class is Zero:
+
+        def straight(bodies, physics, r, v, clear):
+            path = physics.timestep * math.sqrt(dot(v, v))
+            return path if path < clear else path + bodies.further
+
+        return straight
+
+    def bent(bodies, physics, r, v, clear):
         a, time = vector(halfway(physics.field, r, v, physics.timestep), r), physics.timestep
         path = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
-        return path + bodies.further
+        return path if path < clear else path + bodies.further
 
     return bent
 
@@ -179,17 +191,19 @@ def may_reach(bodies, physics, r, v, distance):
 
         return straight
     return lambda bodies, physics, r, v, distance: (
-        not longest_flight(bodies, physics, r, v) < distance
+        not longest_flight(bodies, physics, r, v, 0.0) < distance
     )
 
 
 @scalar
-def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
+def choose_near_bodies(worker, now, physics, bodies, strip, s, count, straight):
     """Put the particles of strip s that may meet a body on the list of this thread.
 
-    Their lanes become the first entries of `marks`; returns their number.
+    Their lanes become the first entries of `bodies.chosen`; returns their number. `straight`: the
+    parts in which no wall bends shorter flights than a stride, as bits, and this stride.
     """
     zero, thread, candidates, chosen = physics.zero, worker.thread, 0, 0
+    marks, (quiet, stride) = bodies.chosen[thread], straight
     time, d, box, allowance = (
         physics.timestep,
         len(zero),
@@ -227,7 +241,8 @@ def choose_near_bodies(worker, now, physics, bodies, strip, s, count, marks):
             load_scratch(flights, PLACE_OF * SCRATCH_ROW + j, zero),
             load_scratch(flights, VELOCITY_OF * SCRATCH_ROW + j, zero),
         )
-        flights[PATH_OF * SCRATCH_ROW + j] = longest_flight(bodies, physics, r, v)
+        clear = stride if (quiet >> (marks[j] // FEW)) & 1 != 0 else 0.0
+        flights[PATH_OF * SCRATCH_ROW + j] = longest_flight(bodies, physics, r, v, clear)
         cubes[j] = np.int32(cell_of(bodies, box, r))
     for j in range(candidates):
         prefetch(bodies.alone, cubes[j], 0)
