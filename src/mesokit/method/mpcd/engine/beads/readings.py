@@ -11,7 +11,7 @@ from mesokit.kernels.kernel import kernel
 from mesokit.loops.threads import Worker
 from mesokit.method.mpcd.engine.beads.external import external_energy
 from mesokit.method.mpcd.engine.beads.interactions import Energy, first_fault, refuse_broken
-from mesokit.method.mpcd.engine.beads.neighbours import MADE, refresh
+from mesokit.method.mpcd.engine.beads.neighbours import MADE, OFFSET, refresh
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
 from mesokit.method.mpcd.engine.cpu.memory import Memory
@@ -136,6 +136,8 @@ class SoluteReadings:
 def energy_in(memory: Memory, beads: Any, places: Floats) -> float:
     """Potential energy of beads, also of forces from outside and of those on the fluid."""
     energy = float(energy_of(ALONE, beads, memory.box, memory.physics.zero))
+    for lists in beads.neighbours:  # all threads must know what one has made
+        lists.noted[:, [OFFSET, MADE]] = lists.noted[0, [OFFSET, MADE]]
     energy += external_energy(beads.external, places)
     return energy + (memory.energy_in_fluid() if beads.embedded else 0.0)
 
