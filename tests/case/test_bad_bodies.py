@@ -399,11 +399,6 @@ CASES = {
         3, [SphereBody(radius=3, counter_force=True)], {},
         "bodies[#1].counter_force = true: needs a force that it balances",
     ),
-    "a force that is held": (
-        3, [SphereBody(radius=3, fixed=["x", "y", "z"], **PUSHED)], {},
-        "bodies[#1].counter_force = true: not with fixed = ['x', 'y', 'z'], which takes the force; "
-        "use fluid.force to drive a flow past it",
-    ),
     "a force that turns": (
         3, [SphereBody(radius=3, frame="body", **PUSHED)], {}, "bodies[#1].counter_force = true: "
         "not with frame = 'body', whose force turns with the body; use 'box'",

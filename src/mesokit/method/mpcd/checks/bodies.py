@@ -366,11 +366,6 @@ def _counter_force(case: Case, kind: Body) -> Iterator[str]:
     key = "counter_force = true"
     if kind.force is None:
         yield f"{key}: needs a force that it balances"
-    elif all(axis in kind.fixed for axis in case.box.axes):
-        yield (
-            f"{key}: not with fixed = {show(list(kind.fixed))}, which takes the force; use "
-            "fluid.force to drive a flow past it"
-        )
     if kind.frame == "body":
         yield f"{key}: not with frame = 'body', whose force turns with the body; use 'box'"
     if case.walls:
