@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit import Box, Case, CaseError, Run, Start
+from mesokit import Box, Case, CaseError, Fluid, Run, Start
 from mesokit.case.trajectory import Trajectory
 from mesokit.method.mpcd.body.disk import DiskBody
 from mesokit.method.mpcd.body.protocol import BodyStart
@@ -143,6 +143,65 @@ def test_a_file_of_spheres_is_refused_in_two_dimensions(tmp_path):
     disks = DiskBody(radius=2, number=2, start=BodyStart(rule="file", file=path))
     case = Case(run=Run(steps=1), box=Box([9, 9]), bodies=(disks,))
     with pytest.raises(CaseError, match=r"its particles differ in z; expected a 2D box as in this"):
+        first_bodies(case)
+
+
+def wrong_velocities(name, array):
+    frame = gsd.hoomd.Frame()
+    frame.configuration.box = [9, 9, 9, 0, 0, 0]
+    frame.particles.N, frame.particles.position = 2, [[0, 0, 0], [4, 4, 4]]
+    if name == "velocities":
+        frame.particles.velocity = array
+    else:
+        frame.log = {"particles/angular_velocity": np.array(array, float)}
+    return frame
+
+
+SLOW = [0, 0, 0.1]
+NO_START = {
+    "a velocity that is none": (
+        "velocities", [SLOW, [np.nan, 0, 0]],
+        "velocities: row 1 = [nan, 0, 0]: expected finite numbers",
+    ),
+    "an infinite spin": (
+        "spins", [[0, np.inf, 0], SLOW], "spins: row 0 = [0, inf, 0]: expected finite numbers",
+    ),
+    "fast": (
+        "velocities", [SLOW, [0, 30, 40]], "velocities: row 1 = [0, 30, 40]: it moves by 5 cells "
+        "in a timestep; expected at most 0.35",
+    ),
+    "fast spins": (
+        "spins", [SLOW, [0, 3, 4]], "spins: row 1 = [0, 3, 4]: it moves by 0.5 cells in a "
+        "timestep; expected at most 0.35",
+    ),
+    "one row": (
+        "spins", [SLOW], "log/particles/angular_velocity has shape (1, 3); expected (2, 3)"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", NO_START)
+def test_velocities_of_a_file_must_be_fit_to_start_from(what, tmp_path):
+    name, array, line = NO_START[what]
+    path = str(tmp_path / "two.gsd")
+    with gsd.hoomd.open(path, mode="w") as file:
+        file.append(wrong_velocities(name, array))
+    start = BodyStart(rule="file", file=path)
+    ball = SphereBody(radius=1, number=2, start=start)
+    fluid = Fluid(timestep=0.1)
+    case = Case(run=Run(steps=1), box=Box([9, 9, 9]), bodies=(ball,), fluid=fluid)
+    with pytest.raises(CaseError) as error:
+        first_bodies(case)
+    assert str(error.value) == f"bodies[#1].start.file = '{path}': {line}"
+
+
+def test_a_run_whose_images_have_slid_is_refused(ended, tmp_path):
+    sheared = replace(ended.case, box=replace(ended.case.box, shear_rate=0.01))
+    early = Simulation(sheared, output=tmp_path / "early", threads=1)
+    early.run(3)
+    early.checkpoint()
+    case = starting(sheared, rule="run", run=str(tmp_path / "early"))
+    with pytest.raises(CaseError, match=r"its images have slid by .* along x, and at a start"):
         first_bodies(case)
 
 

@@ -56,6 +56,8 @@ def _snapshot(frame: Any, file: Any, index: int) -> Snapshot:
     spins = None
     if file.chunk_exists(index, SPIN):
         spins = np.asarray(file.read_chunk(index, SPIN), float)
+        if spins.shape != (n, 3):
+            raise CaseError(f"{SPIN} has shape {spins.shape}; expected {(n, 3)}")
     elif stored("angmom") and stored("moment_inertia"):
         spins = _spins(particles)
     links = np.zeros((0, 2), int) if not bonds.N else np.asarray(bonds.group, int)

@@ -14,6 +14,7 @@ from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.method.mpcd.body.protocol import NEARLY_UNIT, RUN, Body, named
+from mesokit.method.mpcd.checks.bodies import LONGEST_PATH
 from mesokit.method.mpcd.start.snapshot import require_box
 
 Floats = NDArray[np.float64]
@@ -46,6 +47,8 @@ def known_bodies(case: Case, number: int) -> KnownBodies:
     try:
         found = read(case, kind, given.kind or name)
         _require_inside(case, "positions: ", found.places)
+        if given.moving:
+            _require_slow(case, kind, found)
     except MesokitError as error:
         raise CaseError(f"{where}.{given.rule} = {show(path, 500)}: {error}") from None
     velocities, spins = found.velocities, found.spins
@@ -137,6 +140,32 @@ def _require_inside(case: Case, key: str, places: Floats | None) -> None:
         )
 
 
+def _require_slow(case: Case, kind: Body, found: KnownBodies) -> None:
+    """Refuse velocities that are no numbers, or by which a surface goes too far in a timestep."""
+    gaps, arm = kind.interaction.depth > 0, kind.solid(case.box.dimension).radius
+    for name, rows, reach, limited in (
+        ("velocities", found.velocities, 1.0, gaps),
+        ("spins", found.spins, arm, True),
+    ):
+        if rows is None:
+            continue
+        path = np.linalg.norm(rows, axis=1) * reach * case.fluid.timestep
+        wrong = ~np.isfinite(path)
+        if limited:
+            wrong |= path > LONGEST_PATH
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            why = f"it moves by {path[row]:.3g} cells in a timestep; expected at most "
+            raise CaseError(
+                f"{name}: row {row} = {show(rows[row].tolist())}: "
+                + (
+                    f"{why}{LONGEST_PATH:g}"
+                    if np.isfinite(path[row])
+                    else "expected finite numbers"
+                )
+            )
+
+
 # --- earlier runs, and files ----------------------------------------------------------------------
 
 
@@ -161,6 +190,14 @@ def _of_run(case: Case, kind: Body, wanted: str) -> KnownBodies:
         raise CaseError(f"that run has {one.number} bodies {show(wanted)}, this case {kind.number}")
     if one.solid(d).parts != kind.solid(d).parts:
         raise CaseError(f"its bodies {show(wanted)} have another shape or size than in this case")
+    box = numbers.case.box
+    slid = box.displacement(int(state["step"]) * numbers.timestep)
+    slid -= float(box.size[0]) * round(slid / float(box.size[0]))
+    if abs(slid) > ROUNDING:
+        raise CaseError(
+            f"its images have slid by {slid:.4g} along x, and at a start they have not; expected a "
+            "run whose images are back, or 'mesokit resume', which goes on with it"
+        )
     first = sum(other.kind.number for other in there[:place])
     rows = slice(first, first + kind.number)
     x, turns, v, spins = (
