@@ -204,6 +204,7 @@ def _rough_rows(case: Case, name: str) -> list[Row]:
     of = "one in a wide fluid"
     if case.box.dimension == 2:
         of = "a lattice" if body.number > 1 else "one in this box"
+        of += " without walls" if case.walls else ""
     if found.speed > 0:
         said = f"estimate, of {of}; Reynolds number {found.reynolds:.3g}"
         rows.append((f"speed of {name}", number(found.speed, "a/tau"), said))
