@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mesokit.method.mpcd.engine.cpu.sort import turns_of_cells
+from mesokit.method.mpcd.engine.cpu.sort import sequence_of_cells
 from tests.helpers.small_fluids import make_fluid
 
 SIZE = (5, 7)
@@ -53,10 +53,10 @@ def test_order_does_not_depend_on_threads(threads):
 @given(cells=st.tuples(st.integers(1, 9), st.integers(1, 20), st.integers(1, 20)))
 def test_cells_in_space_come_in_pencils(cells):
     """All cells of a pencil lie together, layer by layer along x, in the order of pencils."""
-    turn = turns_of_cells(cells, solids=False)
+    sequence = sequence_of_cells(cells, solids=False)
     count = np.prod(cells)
-    assert sorted(turn) == list(range(count + 1)) and turn[-1] == count
-    x, y, z = np.unravel_index(np.argsort(turn[:-1]), cells, order="F")
+    assert sorted(sequence) == list(range(count + 1)) and sequence[-1] == count
+    x, y, z = np.unravel_index(np.argsort(sequence[:-1]), cells, order="F")
     pencil, layer = z // 8 * cells[1] + y // 8, z % 8 * 8 + y % 8
     place = (pencil * cells[0] + x) * 64 + layer
     assert (np.diff(place) > 0).all()
@@ -73,4 +73,6 @@ def test_particles_in_space_lie_in_pencils():
 
 def test_cells_of_a_plane_and_among_solids_come_by_rows():
     for cells, solids in (((5, 12), False), ((3, 12, 10), True)):
-        np.testing.assert_array_equal(turns_of_cells(cells, solids), np.arange(np.prod(cells) + 1))
+        np.testing.assert_array_equal(
+            sequence_of_cells(cells, solids), np.arange(np.prod(cells) + 1)
+        )

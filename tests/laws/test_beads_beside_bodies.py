@@ -99,9 +99,9 @@ def state_of(fluid):
 
 
 def look(fluid):
-    """Read the energy, for which one thread makes lists that all threads must know as made.
+    """Read the energy, for which one thread makes lists that hold for all threads.
 
-    Else some would make them in the next step and wait there for the others, for ever.
+    Otherwise some threads make them in the next step, and wait there for ever for the others.
     """
     assert np.isfinite(fluid.potential_energy())
     (lists,) = fluid.memory.solutes.neighbours

@@ -136,7 +136,7 @@ class SoluteReadings:
 def energy_in(memory: Memory, beads: Any, places: Floats) -> float:
     """Potential energy of beads, also of forces from outside and of those on the fluid."""
     energy = float(energy_of(ALONE, beads, memory.box, memory.physics.zero))
-    for lists in beads.neighbours:  # all threads must know what one has made
+    for lists in beads.neighbours:  # what one thread has made holds for all
         lists.noted[:, [OFFSET, MADE]] = lists.noted[0, [OFFSET, MADE]]
     energy += external_energy(beads.external, places)
     return energy + (memory.energy_in_fluid() if beads.embedded else 0.0)

@@ -28,7 +28,7 @@ from mesokit.method.mpcd.engine.cpu.groups import (
 )
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.numbers import Numbers
-from mesokit.method.mpcd.engine.cpu.sort import Order, turns_of_cells
+from mesokit.method.mpcd.engine.cpu.sort import Order, sequence_of_cells
 from mesokit.method.mpcd.engine.embedded.allocate import embedded_of
 from mesokit.method.mpcd.engine.embedded.readings import energy_in_fluid
 from mesokit.method.mpcd.engine.parameters import parameters_of
@@ -129,8 +129,8 @@ class Memory:
         self.fluid.particles.ident[self.places] = np.arange(filling.molecules * beads)
         spare, order = zeros(room * beads), zeros(room * beads, np.int32)
         ends = zeros((threads, self.number_of_cells + 1), np.int32)
-        turn = turns_of_cells(self.cells, solids=numbers.solids is not None)
-        self.order = Order(order, ends, spare, spare.view(np.int32), spare.view(np.int64), turn)
+        sequence = sequence_of_cells(self.cells, solids=numbers.solids is not None)
+        self.order = Order(order, ends, spare, spare.view(np.int32), spare.view(np.int64), sequence)
         self.walls = self._walls()
 
     def _require_few(self, particles: int) -> None:
@@ -281,7 +281,7 @@ class Memory:
         """Memory of all arrays."""
         fluid, order = self.fluid, self.order
         groups = (*fluid.particles, *fluid.cells, fluid.room, *fluid.scratch, *fluid.taken)
-        arrays = (*groups, order.order, order.ends, order.spare, order.turn)
+        arrays = (*groups, order.order, order.ends, order.spare, order.sequence)
         return sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
 
     def rows_of(self) -> tuple[Floats, Floats, NDArray[np.int32]]:

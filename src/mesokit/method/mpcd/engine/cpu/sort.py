@@ -4,11 +4,10 @@ Sorted particles find their cells in the cache; a few cells of disorder do no ha
 rarely. The order is that of a stable counting sort, whatever the number of threads. Molecules are
 sorted as a whole, by the cell of their first bead.
 
-In space cells come in pencils along x, 8 x 8 cells across: a strip of particles, which spreads by a
-few cells along each axis until the next sort, has most of its cells in common with the strip before
-it. Row by row it would have those along x alone. A plane is sorted by rows, of which enough fit in
-the cache, and so is a fluid among solids, for in pencils more strips would have particles near a
-plate.
+In space cells come in pencils along x, 8 x 8 cells across. A strip of particles spreads by a few
+cells along each axis until the next sort. In pencils it then has most of its cells in common with
+the strip before it. A plane is sorted by rows, of which enough fit in the cache. So is a fluid
+among solids, because in pencils more strips would have particles near a plate.
 """
 
 import math
@@ -46,16 +45,16 @@ class Order(NamedTuple):
     spare: Any  # (particles,) floats
     whole: Any  # the same memory as whole numbers of 32 bits
     long: Any  # and of 64
-    turn: Any  # (cells,) number of each cell in the order of memory
+    sequence: Any  # (cells,) number of each cell in the order of memory
 
 
 PENCIL = 8  # cells along y and along z
 
 
-def turns_of_cells(cells: tuple[int, ...], solids: bool) -> NDArray[np.int32]:
+def sequence_of_cells(cells: tuple[int, ...], solids: bool) -> NDArray[np.int32]:
     """Number of each cell in the order of memory; that of the spare cell is the last.
 
-    >>> turns_of_cells((2, 16, 1), solids=False)[[0, 2, 14, 16, 1, 32]]  # y = 0, 1, 7, 8; x = 1
+    >>> sequence_of_cells((2, 16, 1), solids=False)[[0, 2, 14, 16, 1, 32]]  # y = 0, 1, 7, 8; x = 1
     array([ 0,  1,  7, 16,  8, 32], dtype=int32)
     """
     number = np.arange(math.prod(cells) + 1, dtype=np.int32)
@@ -145,7 +144,7 @@ def order_by_cell(worker, particles, memory):
     ends[thread] = 0
     # Counting sort. Each thread counts the molecules of its share of memory, by cell.
     for i in range(first, last):
-        ends[thread, memory.turn[cell[place_of_bead(filling, i, 0)]]] += 1
+        ends[thread, memory.sequence[cell[place_of_bead(filling, i, 0)]]] += 1
     barrier(worker)
     # From counts to the place of each thread's first molecule of each cell, cell by cell and in a
     # cell thread by thread. Shares of threads are in the order of memory, so the sort is stable for
@@ -164,7 +163,7 @@ def order_by_cell(worker, particles, memory):
     barrier(worker)
     # No two threads have a place in common, so all write to `order` at once.
     for i in range(first, last):
-        c = memory.turn[cell[place_of_bead(filling, i, 0)]]
+        c = memory.sequence[cell[place_of_bead(filling, i, 0)]]
         memory.order[ends[thread, c]] = i
         ends[thread, c] += 1
     barrier(worker)
